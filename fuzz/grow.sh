@@ -30,13 +30,15 @@ build() {
         cp -f "$build/$host/release/$target" "$grown/bin/$target.new"
         mv -f "$grown/bin/$target.new" "$grown/bin/$target"
     done
+    GROWN=$grown fuzz/places.py build
 }
 
-# One piece. A piece has found something new if there is more coverage at its
-# end than after the corpus was loaded: `cov` counts edges, `ft` also how often
-# they were taken. The ledger has the seconds since the last of either.
+# One piece. What it found is counted in three ways. `cov` counts edges of the
+# program, `ft` also how often they were taken; the ledger has the seconds since the last of
+# either. `places` counts regions of the source: of a generic function an edge is there
+# once for each rung and effect it is built for, a place once.
 piece() {
-    local target=$1 number event cov ft rest executions=0 result=ok
+    local target=$1 number event cov ft rest executions=0 result=ok places_new=0 places=0
     local cov_now=0 ft_now=0 cov_new=0 ft_new=0
     local start=$EPOCHSECONDS cov_s=$EPOCHSECONDS ft_s=$EPOCHSECONDS
     local options=(-max_total_time="$piece_s" -print_final_stats=1 -timeout=10 -artifact_prefix="$grown/crash-$target-")
@@ -59,10 +61,17 @@ piece() {
         esac
     done < <("$grown/bin/$target" "${options[@]}" "$grown/$target" "fuzz/corpus/$target" 2>&1 | tee "$grown/last-$target.log")
     local now=$EPOCHSECONDS
+    read -r places_new places _ < <(places "$target")
     # In one write: two runs may share a ledger.
-    printf '%s\t%s\t%d\t%d\t%d\t%d\t%d\t%d\t%d\t%d\t%s\n' "$target" "$(date -u +%FT%TZ)" $((now - start)) \
-        "$executions" "$cov_now" "$ft_now" "$cov_new" "$ft_new" $((now - cov_s)) $((now - ft_s)) "$result" |
+    printf '%s\t%s\t%d\t%d\t%d\t%d\t%d\t%d\t%d\t%d\t%s\t%d\t%d\n' "$target" "$(date -u +%FT%TZ)" $((now - start)) \
+        "$executions" "$cov_now" "$ft_now" "$cov_new" "$ft_new" $((now - cov_s)) $((now - ft_s)) "$result" \
+        "$places" "$places_new" |
         tee -a "$ledger"
+}
+
+# What the corpus reaches of the source, with files that were not read yet.
+places() {
+    GROWN=$grown fuzz/places.py new "$1" "$grown/$1" "fuzz/corpus/$1" 2>>"$grown/places-$1.log"
 }
 
 # Sums of the ledger. "Quiet": seconds of fuzzing since there was anything new.
@@ -74,16 +83,20 @@ status() {
             executions[$1] += $4; seconds[$1] += $3; cov[$1] = $5; ft[$1] = $6
             no_cov[$1] = $7 > 0 ? $9 : no_cov[$1] + $3
             no_ft[$1] = $8 > 0 ? $10 : no_ft[$1] + $3
-            crashes[$1] += $11 == "crash"; all += $4; all_s += $3
+            # A piece that found a place counts for nothing, as one that was not looked at.
+            places[$1] = $12; no_place[$1] = $13 > 0 || NF < 13 ? 0 : no_place[$1] + $3
+            if ($11 == "crash") { crashes[$1]++; no_cov[$1] = no_ft[$1] = no_place[$1] = 0 }
+            all += $4; all_s += $3
         }
         END {
-            print "target        executions   minutes     cov      ft   quiet cov, min   quiet ft, min   crashes"
+            print "target        executions   minutes     cov      ft  places   quiet: cov, min   ft, min   places, min   crashes"
             for (i = 1; i <= count; i++) {
                 t = order[i]
-                printf "%-10s %13d %9.1f %7d %7d %16.1f %15.1f %9d\n", t, executions[t], seconds[t] / 60, \
-                    cov[t], ft[t], no_cov[t] / 60, no_ft[t] / 60, crashes[t]
+                quiet += no_place[t]
+                printf "%-10s %13d %9.1f %7d %7d %7d %17.1f %9.1f %13.1f %9d\n", t, executions[t], seconds[t] / 60, \
+                    cov[t], ft[t], places[t], no_cov[t] / 60, no_ft[t] / 60, no_place[t] / 60, crashes[t]
             }
-            printf "%-10s %13d %9.1f\n", "all", all, all_s / 60
+            printf "%-10s %13d %9.1f %55.1f\n", "all", all, all_s / 60, quiet / 60
         }' "$ledger"
 }
 
@@ -135,8 +148,12 @@ case "${1:-}" in
     *)
         build
         if [ ! -f "$ledger" ]; then
-            printf 'target\tdate\tseconds\texecutions\tcov\tft\tnew cov\tnew ft\tquiet cov s\tquiet ft s\tresult\n' >"$ledger"
+            printf 'target\tdate\tseconds\texecutions\tcov\tft\tnew cov\tnew ft\tquiet cov s\tquiet ft s\tresult\tplaces\tnew places\n' >"$ledger"
         fi
+        for target in ${*:-$targets}; do
+            mkdir -p "$grown/$target"
+            echo "$target: $(places "$target") places are new, reached, known"
+        done
         for ((round = 0; round < rounds; round++)); do
             for target in ${*:-$targets}; do piece "$target"; done
         done
