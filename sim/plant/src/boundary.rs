@@ -132,8 +132,9 @@ impl Boundary for Prescribed {
         let omega_rad_s = travel / stretch.length_s;
         let mut torque_nm = push.at(omega_rad_s);
         if let Some(limit) = push.held_by_nm {
-            // At rest the friction carries as much as it can, the hand the rest.
-            torque_nm -= torque_nm.clamp(-limit, limit);
+            // At rest the friction carries as much as it can, the hand the rest. A device that
+            // diverges makes the limit no number, of which `clamp` panics.
+            torque_nm -= torque_nm.max(-limit).min(limit);
         }
         Flow {
             omega_rad_s,
