@@ -15,6 +15,8 @@ mod knee;
 mod lessons;
 mod recording;
 mod status;
+#[cfg(test)]
+mod tests;
 
 use crate::frame::{Header, Kind, Masks, frame};
 use crate::request::{AimAt, Request};
