@@ -201,6 +201,10 @@ fn motions_are_checked_key_by_key() {
             "kind = \"sine\"\nfrequency_hz = 1\namplitude_deg = 1\namplitude_rad = 1",
             "not both",
         ),
+        (
+            "kind = \"sine\"\nfrequency_hz = 1e-322\namplitude_deg = 1",
+            "from 1e-7 up to 10000",
+        ),
         ("kind = \"velocity-knots\"\nknots = []", "at least one knot"),
         ("kind = \"velocity-knots\"\nknots = 3", "a list of tables"),
         (

@@ -115,6 +115,9 @@ fn seed(section: &Section<'_>) -> Result<Option<u64>, SceneError> {
 /// Range of a stroke's duration, s.
 const STROKE_S: std::ops::RangeInclusive<f64> = 1e-3..=1e7;
 
+/// The slowest sine, Hz, of a period as long as the longest stroke.
+const LEAST_HZ: f64 = 1e-7;
+
 /// The shortest time between two knots, s: within less an acceleration is no
 /// number any more.
 const LEAST_KNOT_S: f64 = 1e-9;
@@ -135,7 +138,7 @@ fn sine(section: &Section<'_>) -> Result<Motion, SceneError> {
             return Err(section.error("a sine needs amplitude_deg or amplitude_rad"));
         }
     };
-    let frequency_hz = section.number("frequency_hz", Range::above(0.0, 1e4))?;
+    let frequency_hz = section.number("frequency_hz", Range::closed(LEAST_HZ, 1e4))?;
     let phase_deg = section.number_or("phase_deg", Range::closed(-360.0, 360.0), 0.0)?;
     let from_deg = section.number_or("from_deg", ANY_DEG, 0.0)?;
     Ok(Motion::sine(amplitude_rad, frequency_hz, phase_deg).shifted(from_deg.to_radians()))
