@@ -133,9 +133,15 @@ struct Run {
 }
 
 impl Run {
-    /// Whether a state is no number, and which: a shaft that is none makes an object none.
+    /// Whether a state is no number, and which: a shaft that is none, or none in the precision
+    /// of the solver, makes an object none.
     fn diverged(&self, scene: &Scene, by_s: f64) -> Option<Diverged> {
-        if !self.plant.shaft().angle_rad.is_finite() {
+        let shaft = self.plant.shaft();
+        if self.device.is_finite() && shaft.angle_rad.is_finite() {
+            return None;
+        }
+        let fits = |x: f64| x.abs() < f64::from(f32::MAX);
+        if !(fits(shaft.angle_rad) && fits(shaft.omega_rad_s)) {
             return Some(Diverged::Shaft {
                 by_s,
                 step_s: self.tick_s,
@@ -144,7 +150,7 @@ impl Run {
         let swing = scene
             .crepitus
             .map_or(0.0, |c| c.settings.parameters.natural_rad_s());
-        (!self.device.is_finite()).then(|| Diverged::Object {
+        Some(Diverged::Object {
             solver: scene.solver.name(),
             by_s,
             radians_per_step: swing * self.tick_s,
