@@ -285,20 +285,21 @@ impl StepAccounting {
         joint: &J,
         restarts: u32,
     ) {
+        let gap = self.gap.take();
         if restarts == self.restarts {
             self.end_step(seen, joint);
-        } else {
-            self.restarts = restarts;
-            self.phi_rad += seen.delta_phi_rad.to_f64();
-            let state = object_state(start_s + self.step_s, self.phi_rad, joint);
-            self.stick = self.stick_end(seen, 1.0, state.theta_rad);
-            self.tally.constant(joint.torque_nm().to_f64(), self.step_s);
-            if let Some(gap) = self.gap.take() {
-                self.tally.restart(&gap, state);
+            if let Some(gap) = gap {
+                self.tally.caught_up(&gap);
             }
+            return;
         }
-        if let Some(gap) = self.gap.take() {
-            self.tally.caught_up(&gap);
+        self.restarts = restarts;
+        self.phi_rad += seen.delta_phi_rad.to_f64();
+        let now = object_state(start_s + self.step_s, self.phi_rad, joint);
+        self.stick = self.stick_end(seen, 1.0, now.theta_rad);
+        self.tally.constant(joint.torque_nm().to_f64(), self.step_s);
+        if let Some(gap) = gap {
+            self.tally.restart(&gap, now);
         }
     }
 

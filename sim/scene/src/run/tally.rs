@@ -135,8 +135,10 @@ impl Tally {
 
     /// Notes a torque that was computed again, unless it is beyond the others by rounding only.
     #[inline]
-    fn shown_within(&mut self, torque_nm: f64, rounding_nm: f64) {
-        let known = self.torque.min_nm - rounding_nm..=self.torque.max_nm + rounding_nm;
+    fn shown_again(&mut self, torque_nm: f64) {
+        let TorqueTally { min_nm, max_nm, .. } = self.torque;
+        let rounding_nm = 1e-6 * (torque_nm.abs() + max_nm.max(-min_nm));
+        let known = min_nm - rounding_nm..=max_nm + rounding_nm;
         if !known.contains(&torque_nm) && torque_nm.is_finite() {
             self.shown(torque_nm);
         }
@@ -190,7 +192,7 @@ impl Tally {
             integral = f64::midpoint(from, to) * dt_s;
         }
         for torque_nm in [from, to, integral / dt_s] {
-            self.shown_within(torque_nm, 1e-6 * limit);
+            self.shown_again(torque_nm);
         }
         self.torque.integral += integral;
         self.torque.square += dt_s * (from * from + from * to + to * to) / 3.0;
