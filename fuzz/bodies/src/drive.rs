@@ -9,19 +9,21 @@
 //! - a fault stays until a command clears it; nothing else arms but a command;
 //! - active parameters were sent completely, and are valid;
 //! - torque is a number within the largest limit, and zero unless armed;
-//! - every frame that it sends is valid, and every sample is accounted for.
+//! - every frame that it sends is valid, and every sample is accounted for;
+//! - parts of the record of a crash are that record's.
 
 use crate::bytes::Bytes;
 use crate::link_inputs;
 use crate::winding::Winding;
 use crepitus_device::Drive;
-use crepitus_device::drive::Boot;
 use crepitus_device::drive::coil::{CoilOutput, LARGEST_COIL_DUTY};
 use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::slow_checks::SlowInput;
+use crepitus_device::drive::{Boot, Crash};
 use crepitus_device::self_test::SelfTest;
 use crepitus_protocol::counters::DriveCounter;
+use crepitus_protocol::crash::{End, Head, PART_WORDS, TICK_WORDS};
 use crepitus_protocol::link::{FromDrive, Heartbeat, Order, STALE_TICKS, ToDrive};
 use crepitus_protocol::management::{Answer, Identity, ManagementRequest, ResetCause};
 use crepitus_protocol::pieces::{self, Piece};
@@ -29,6 +31,7 @@ use crepitus_protocol::telemetry::{BLOCK_SAMPLES, SampleFlags};
 use crepitus_protocol::{
     Decoder, DeviceSettings, HEARTBEAT_TICKS, Lane, Revision, State, TICK_US, Values, frame, schema,
 };
+use std::array;
 use std::collections::VecDeque;
 
 /// The most ticks of one input.
@@ -49,18 +52,24 @@ pub(crate) const HEAD_BYTES: usize = 5;
 /// Where one is broken.
 pub fn body(data: &[u8]) {
     let mut bytes = Bytes::new(data);
+    let reset = bytes.choice(&ResetCause::ALL);
+    let counter = bytes.choice(&[0, 7, 0x7fff_fff0, 0xffff_fff0]);
+    let start = u16::from(bytes.byte());
     let boot = Boot {
         self_test: SelfTest::default(),
         identity: Identity {
             schema: schema::HASH,
-            reset: bytes.choice(&ResetCause::ALL),
+            reset,
             ..Identity::default()
         },
-        counter: bytes.choice(&[0, 7, 0x7fff_fff0, 0xffff_fff0]),
-        start: u16::from(bytes.byte()),
+        counter,
+        start,
         tick: bytes.choice(&[0, 1, (1 << 32) - 50, 1 << 40]),
         sequence: bytes.choice(&[0, u16::MAX - 1]),
-        crash: None,
+        crash: (start & 0x80 != 0).then(|| Crash {
+            head: Head::new(start, End::Panic, 7),
+            ticks: array::from_fn(|n| [u32::try_from(n).expect("a few"); TICK_WORDS]),
+        }),
     };
     let mut bench = Bench::new(&boot);
     while !bytes.is_empty() && bench.ticks < MOST_TICKS {
@@ -80,6 +89,7 @@ struct Readings {
     /// Replaces the current of the winding.
     current_a: Option<f32>,
     line: Option<bool>,
+    comms_line_is_off: bool,
     has_tripped: bool,
     is_late: bool,
     is_idle: bool,
@@ -94,6 +104,7 @@ impl Readings {
             has_current: true,
             current_a: None,
             line: None,
+            comms_line_is_off: false,
             has_tripped: false,
             is_late: false,
             is_idle: true,
@@ -108,6 +119,7 @@ impl Readings {
             has_current: how & 1 == 0,
             current_a: (how & 2 != 0).then(|| bytes.f32()),
             line: (how & 4 != 0).then_some(how & 8 != 0),
+            comms_line_is_off: how & 0x0c == 0x08,
             has_tripped: how & 0x30 == 0x30,
             is_late: how & 0x40 != 0,
             is_idle: how & 0x80 == 0,
@@ -138,11 +150,19 @@ struct Bench {
     received: u64,
     first_tick: u64,
     sequence: u16,
+    /// Words of its record of a crash.
+    crash: Vec<u32>,
 }
 
 impl Bench {
     fn new(boot: &Boot) -> Self {
+        let head = boot.crash.iter().flat_map(|crash| crash.head.words());
+        let ticks = boot
+            .crash
+            .iter()
+            .flat_map(|crash| crash.ticks.as_flattened());
         Self {
+            crash: head.chain(ticks.copied()).collect(),
             drive: Drive::new(boot).expect("the defaults are allowed"),
             winding: Winding::default(),
             counter: boot.counter,
@@ -353,7 +373,8 @@ impl Bench {
             monitor_a: readings.has_current.then_some(current_a),
             interval_us: TICK_US,
             enable_is_on: readings.line.unwrap_or(self.line_is_on),
-            comms_enable_is_on: before == State::Armed || self.drive.awaits_comms(),
+            comms_enable_is_on: !readings.comms_line_is_off
+                && (before == State::Armed || self.drive.awaits_comms()),
             has_tripped: readings.has_tripped,
             slow: if readings.is_slow_good {
                 SlowInput::in_turn(tick, 24.0, 25.0, 0.0)
@@ -402,6 +423,8 @@ impl Bench {
             return;
         };
         assert!(volts.is_finite() && live);
+        // What arming proves is that no current flows with a line off.
+        assert!(inputs.comms_enable_is_on || state == State::Arming);
         // Only arming drives through a gate that has to be closed.
         assert!(outputs.enable || state == State::Arming);
         let is_proof = state == State::Arming && volts.abs() <= 24.0;
@@ -467,7 +490,17 @@ impl Bench {
                         let told = (status.tick, status.state, status.revision);
                         assert!(self.states.contains(&told), "{told:?} was never so");
                     }
-                    FromDrive::CrashPart(part) => assert_eq!(part.words, None),
+                    FromDrive::CrashPart(part) => {
+                        let expected = self.crash.chunks(PART_WORDS).nth(part.number.into());
+                        let words = part.words.as_ref().map(<[u32; PART_WORDS]>::as_slice);
+                        assert_eq!(words.is_some(), expected.is_some(), "{part:?}");
+                        let pairs = words.into_iter().zip(expected);
+                        assert!(
+                            pairs
+                                .into_iter()
+                                .all(|(words, expected)| words.starts_with(expected))
+                        );
+                    }
                 },
                 Some(Lane::ManagementAnswer) => {
                     assert!(Answer::of(body.payload).is_some());
