@@ -46,6 +46,9 @@ const LEASE_MS: u64 = 250;
 /// Timeout: without a block for this long the drive is silent, ms.
 const SILENT_MS: u64 = 5;
 
+/// Sessions that comms knows at once.
+const MOST_SESSIONS: u32 = 32;
+
 /// Checks the laws.
 ///
 /// # Panics
@@ -220,6 +223,7 @@ impl Bench {
                     self.is_in_frame = false;
                 }
                 16..=63 => self.comms.saved(bytes.byte() < 200),
+                250.. => self.crowd(),
                 count => self.read(usize::from(count)),
             },
             _ => {
@@ -233,6 +237,15 @@ impl Bench {
 
     fn request(&mut self, session: Session, number: u32, operation: Operation) {
         self.request_with(self.host.nonce(session), session, number, operation);
+    }
+
+    /// As many other sessions as comms knows at once: whoever was there is forgotten, but the
+    /// holder of the lease and those that a request is for.
+    fn crowd(&mut self) {
+        for number in 0..MOST_SESSIONS {
+            self.request(Session(0x10_0000 + number), 1, Operation::Open);
+            self.read(usize::MAX);
+        }
     }
 
     /// A request with another nonce than that of the session is not executed.
