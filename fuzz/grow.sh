@@ -114,6 +114,7 @@ merge() {
     mkdir -p "$grown/$target"
     rm -f "$control"
     "$grown/bin/$target" -set_cover_merge=1 -use_counters=0 -merge_control_file="$control" \
+        -artifact_prefix="$grown/crash-$target-" \
         "$out" "$grown/$target" "fuzz/corpus/$target" >"$grown/merge-$target.log" 2>&1
     # The control file: number of files, of those in the first folder, their
     # names, then a line of edges for each.
