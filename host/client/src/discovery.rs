@@ -123,10 +123,31 @@ pub fn simulated_devices(folder: &Path) -> Vec<Device> {
     devices
 }
 
-/// Whether this port is the link of a simulated device that no program serves
+/// Whether this port is, or leads to, the link of a simulated device that no program serves
 /// any more. What is behind it may be anybody's terminal.
+///
+/// It is told by its folder, however the path is written, or by the lock beside it: the folder
+/// may be that of another environment.
 pub fn is_stale(port: &Path) -> bool {
-    port.parent() == Some(&simulated_folder()) && port.is_symlink() && !name::is_served(port)
+    /// Links that lead to links; the system follows 40.
+    const MOST_LINKS: usize = 40;
+    let folder = fs::canonicalize(simulated_folder()).ok();
+    let mut path = port.to_path_buf();
+    for _ in 0..MOST_LINKS {
+        let Ok(target) = fs::read_link(&path) else {
+            return false;
+        };
+        let parent = match path.parent() {
+            Some(parent) if parent != Path::new("") => parent.to_path_buf(),
+            _ => PathBuf::from("."),
+        };
+        let is_there = folder.is_some() && fs::canonicalize(&parent).ok() == folder;
+        if (is_there || name::has_lock(&path)) && !name::is_served(&path) {
+            return true;
+        }
+        path = parent.join(target);
+    }
+    false
 }
 
 #[cfg(test)]
@@ -152,6 +173,36 @@ mod tests {
     #[test]
     fn listing_ports_does_not_panic() {
         usb_devices().unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_stale_link_is_told_by_its_lock_wherever_it_is_and_however_it_is_written() {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::write(path("terminal"), "").unwrap();
+        fs::create_dir(path("inside")).unwrap();
+        symlink(path("terminal"), path("inside/knee")).unwrap();
+        symlink("inside/knee", path("shortcut")).unwrap();
+        let names = [
+            "inside/knee",
+            "inside/../inside/knee",
+            "./inside/knee",
+            "shortcut",
+        ];
+        // Anybody's link.
+        assert!(names.iter().all(|name| !is_stale(&path(name))));
+        let lock = fs::File::create(path("inside/knee.lock")).unwrap();
+        for name in names {
+            assert!(is_stale(&path(name)), "{name}");
+        }
+        lock.lock().unwrap();
+        assert!(names.iter().all(|name| !is_stale(&path(name))));
+        assert!(!is_stale(&path("terminal")));
+        // A link to itself leads nowhere.
+        symlink(path("round"), path("round")).unwrap();
+        assert!(!is_stale(&path("round")));
     }
 
     #[cfg(unix)]

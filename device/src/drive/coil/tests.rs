@@ -123,7 +123,13 @@ fn a_whole_coil_is_no_short_at_the_largest_voltage() {
             rig.inductance_h = 1e-5;
             rig.resistance_ohm *= share;
             let context = format!("{supply_v} V, {resistance_ohm} Ω, {share}");
-            let bangs = |n: u32| if (n / 100).is_multiple_of(2) { 20.0 } else { -20.0 };
+            let bangs = |n: u32| {
+                if (n / 100).is_multiple_of(2) {
+                    20.0
+                } else {
+                    -20.0
+                }
+            };
             let mut most_a = 0.0_f32;
             for n in 0..2_000 {
                 rig.tick(bangs(n), Some);

@@ -62,6 +62,11 @@ pub(super) fn is_served(link: &Path) -> bool {
     is_locked && link.exists()
 }
 
+/// Whether a program has served a simulated device at this link.
+pub(super) fn has_lock(link: &Path) -> bool {
+    lock_of(link).exists()
+}
+
 fn lock_of(link: &Path) -> PathBuf {
     let mut path = link.as_os_str().to_owned();
     path.push(".lock");
