@@ -5,7 +5,7 @@ mod support;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use std::process::Output;
+use std::process::{Output, Stdio};
 use support::{crepitus, names, stderr, stdout, summary};
 
 fn run_in(home: &Path, arguments: &[&str]) -> Output {
@@ -115,6 +115,49 @@ fn a_repeated_run_finds_its_recording_from_anywhere_and_notices_another_one() {
         stderr(&changed)
     );
     assert_eq!(names(elsewhere.path()), ["b"]);
+    // With other data it is another run, and takes nothing away.
+    let said = done(home.path(), &["lab/scene.toml", "--out", "a"]);
+    assert!(said.contains("a-2"), "{said}");
+    let hash_in = |folder: &str| summary(&home.path().join(folder))["data"]["sha256"].clone();
+    assert!(hash_in("a") == hash && hash_in("a-2") != hash);
+}
+
+#[test]
+fn a_run_without_a_trace_leaves_that_of_the_same_run() {
+    let home = tempfile::tempdir().unwrap();
+    let run = ["fig6-ideal-cycle", "--set", "duration_s=0.1", "--out", "a"];
+    done(home.path(), &run);
+    let all = names(&home.path().join("a"));
+    assert!(all.contains(&"trace.csv".to_owned()), "{all:?}");
+    assert_eq!(done(home.path(), &[&run[..], &["--no-trace"]].concat()), "");
+    assert_eq!(names(&home.path().join("a")), all);
+}
+
+#[test]
+fn of_two_runs_at_once_each_has_its_folder() {
+    let home = tempfile::tempdir().unwrap();
+    let durations = ["0.11", "0.12", "0.13", "0.14"];
+    let programs = durations.map(|duration| {
+        crepitus()
+            .args(["run", "fig6-ideal-cycle", "--set"])
+            .arg(format!("duration_s={duration}"))
+            .current_dir(home.path())
+            .stderr(Stdio::null())
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap()
+    });
+    for mut program in programs {
+        assert!(program.wait().unwrap().success());
+    }
+    let out = home.path().join("out");
+    let mut found: Vec<_> = names(&out)
+        .iter()
+        .map(|folder| summary(&out.join(folder))["simulated_s"].as_f64().unwrap())
+        .map(|s| format!("{s:.2}"))
+        .collect();
+    found.sort();
+    assert_eq!(found, durations);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crepitus_plot::{Figure, pictures};
+use crepitus_scene::Scene;
 use crepitus_scene::output::Folder;
 use serde::Serialize;
 use serde_json::Value;
@@ -71,37 +72,77 @@ pub(crate) fn svg_files<'f>(figures: impl IntoIterator<Item = &'f Figure>) -> Fi
         .collect()
 }
 
-/// This folder, or the first of `folder-2`, `folder-3`, … that holds no other
-/// run than that of `as_run`.
-pub(crate) fn free_folder(wanted: &Path, as_run: &str) -> Result<PathBuf, Failure> {
-    /// More than anybody keeps.
-    const MOST: u32 = 10_000;
-    (1..=MOST)
-        .map(|number| {
-            if number == 1 {
-                return wanted.to_owned();
-            }
-            let mut name = wanted.as_os_str().to_owned();
-            name.push(format!("-{number}"));
-            PathBuf::from(name)
-        })
-        .find(|folder| !holds_another(folder, as_run))
-        .ok_or_else(|| {
-            Failure::Input(format!(
-                "{} and {MOST} more hold other runs: name another folder with --out",
-                wanted.display()
-            ))
-        })
+/// What makes a run that run: with the same, the same numbers come out.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Identity<'a> {
+    as_run: &'a str,
+    data_sha256: Option<&'a str>,
 }
 
-/// Whether a folder holds another run.
-fn holds_another(folder: &Path, as_run: &str) -> bool {
-    if !folder.join("summary.json").exists() {
-        return false;
+impl<'a> Identity<'a> {
+    pub(crate) fn of(scene: &'a Scene) -> Self {
+        Self {
+            as_run: &scene.as_run,
+            data_sha256: scene.data.as_ref().map(|data| data.sha256.as_str()),
+        }
     }
-    let summary = summary_in(folder);
-    let version = summary["crepitus_version"].as_str();
-    summary["scene_as_run"].as_str() != Some(as_run) || version != Some(env!("CARGO_PKG_VERSION"))
+
+    /// This folder, or the first of `folder-2`, `folder-3`, … that holds no other run.
+    pub(crate) fn free_folder(self, wanted: &Path) -> Result<PathBuf, Failure> {
+        /// More than anybody keeps.
+        const MOST: u32 = 10_000;
+        (1..=MOST)
+            .map(|number| {
+                if number == 1 {
+                    return wanted.to_owned();
+                }
+                let mut name = wanted.as_os_str().to_owned();
+                name.push(format!("-{number}"));
+                PathBuf::from(name)
+            })
+            .find(|folder| !self.is_another_in(folder))
+            .ok_or_else(|| {
+                Failure::Input(format!(
+                    "{} and {MOST} more hold other runs: name another folder with --out",
+                    wanted.display()
+                ))
+            })
+    }
+
+    /// Whether a folder holds another run.
+    pub(crate) fn is_another_in(self, folder: &Path) -> bool {
+        if !folder.join("summary.json").exists() {
+            return false;
+        }
+        let summary = summary_in(folder);
+        let is_this = summary["scene_as_run"].as_str() == Some(self.as_run)
+            && summary["data"]["sha256"].as_str() == self.data_sha256
+            && summary["crepitus_version"].as_str() == Some(env!("CARGO_PKG_VERSION"))
+            && summary["crepitus_commit"].as_str() == option_env!("CREPITUS_COMMIT");
+        !is_this
+    }
+
+    /// Writes the files of the run, and moves their folder to `out`, or to the first beside it
+    /// that is free if another program has put its run there meanwhile. Returns where they are.
+    pub(crate) fn write(
+        self,
+        mut folder: Folder,
+        (wanted, out): (&Path, &Path),
+        files: Files,
+    ) -> Result<PathBuf, Failure> {
+        fill(&folder, out, files)?;
+        let failed = |e| Failure::at(out, "moving the results into place", &e);
+        let mut place = out.to_owned();
+        while !folder.commit_new().map_err(failed)? {
+            if !self.is_another_in(&place) {
+                folder.commit().map_err(failed)?;
+                break;
+            }
+            place = self.free_folder(wanted)?;
+            folder.aim_at(&place);
+        }
+        Ok(place)
+    }
 }
 
 /// Removes what an earlier run in the folder has left and this one does not
@@ -118,8 +159,8 @@ pub(crate) fn remove_others(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes files into a folder, and moves it into place.
-pub(crate) fn write(folder: Folder, out: &Path, files: Files) -> Result<(), Failure> {
+/// Writes files into a folder.
+fn fill(folder: &Folder, out: &Path, files: Files) -> Result<(), Failure> {
     for (name, content) in files {
         folder
             .file(&name)
@@ -129,6 +170,12 @@ pub(crate) fn write(folder: Folder, out: &Path, files: Files) -> Result<(), Fail
             })
             .map_err(|e| Failure::at(out, "writing the results", &e))?;
     }
+    Ok(())
+}
+
+/// Writes files into a folder, and moves it into place.
+pub(crate) fn write(folder: Folder, out: &Path, files: Files) -> Result<(), Failure> {
+    fill(&folder, out, files)?;
     folder
         .commit()
         .map_err(|e| Failure::at(out, "moving the results into place", &e))

@@ -10,11 +10,12 @@ use crate::interrupt;
 use crate::overlay::{self, Overlay};
 use crate::pictures::Pictures;
 use crate::reported::Reported;
-use crate::results::{self, footer, report_files};
+use crate::results::{self, Identity, footer, report_files};
 use crate::sections::torque_levels;
 use crate::wav::Wav;
 use clap::Args;
 use crepitus_report::{Setup, Text};
+use crepitus_scene::output::Folder;
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, RunError, Scene, Summary, run as runner};
 use std::path::{Path, PathBuf};
@@ -93,16 +94,26 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let out = if arguments.force {
         wanted.clone()
     } else {
-        results::free_folder(&wanted, &scene.as_run)?
+        Identity::of(&scene).free_folder(&wanted)?
     };
-    if out != wanted && !as_json {
-        eprintln!(
-            "{} holds another run: this one goes to {} (--force would replace it)",
-            wanted.display(),
-            out.display()
-        );
+    let tell = |verb: &str, out: &Path| {
+        if !as_json {
+            eprintln!(
+                "{} holds another run: this one {verb} {} (--force would replace it)",
+                wanted.display(),
+                out.display()
+            );
+        }
+    };
+    if out != wanted {
+        tell("goes to", &out);
     }
-    let reported = simulate(&scene, &out, arguments)?;
+    let (reported, place) = simulate(&scene, (&wanted, &out), arguments)?;
+    // Another program was quicker.
+    if place != out {
+        tell("is in", &place);
+    }
+    let out = place;
     if as_json {
         return print_json(&reported.json(&out));
     }
@@ -160,12 +171,12 @@ fn with_commit(summary: Summary) -> Summary {
     }
 }
 
-/// Runs the scene and writes its files.
+/// Runs the scene and writes its files; returns where they are, too.
 fn simulate(
     scene: &Scene,
-    out: &Path,
+    (wanted, out): (&Path, &Path),
     arguments: &Arguments,
-) -> Result<Reported<Summary>, Failure> {
+) -> Result<(Reported<Summary>, PathBuf), Failure> {
     let columns = runner::columns(scene);
     let measured = arguments.overlay.read(&columns)?;
     let listener = arguments.wav.listener(&columns, scene.trace_step_s)?;
@@ -179,13 +190,14 @@ fn simulate(
         let summary = crepitus_scene::run(scene, &mut watch).map_err(failed_run)?;
         let summary = with_commit(summary);
         watch.finish().map_err(|e| failed(&e))?;
-        results::write(folder, out, vec![results::summary_file(&summary)?])?;
-        results::remove_others(out)?;
-        return Ok(Reported {
+        let files = vec![results::summary_file(&summary)?];
+        let out = write(scene, folder, (wanted, out), files, arguments)?;
+        let reported = Reported {
             summary,
             differences: Vec::new(),
             sound: None,
-        });
+        };
+        return Ok((reported, out));
     }
     let setup = Setup {
         columns: &columns,
@@ -222,12 +234,34 @@ fn simulate(
     let sound = listener
         .map(|listener| listener.finish(&scene.title))
         .transpose()?;
-    results::write(folder, out, files)?;
+    let out = write(scene, folder, (wanted, out), files, arguments)?;
     let differences = figures.differences();
     overlay::warn_of_nothing(&differences, arguments.overlay.file());
-    Ok(Reported {
+    let reported = Reported {
         summary,
         differences,
         sound,
-    })
+    };
+    Ok((reported, out))
+}
+
+/// Puts the files in place. Beside those of the same run, which are still true, or with
+/// `--force` in the place of another's.
+fn write(
+    scene: &Scene,
+    folder: Folder,
+    (wanted, out): (&Path, &Path),
+    files: results::Files,
+    arguments: &Arguments,
+) -> Result<PathBuf, Failure> {
+    let run = Identity::of(scene);
+    if !arguments.force {
+        return run.write(folder, (wanted, out), files);
+    }
+    let is_replaced = run.is_another_in(out);
+    results::write(folder, out, files)?;
+    if is_replaced && arguments.no_trace {
+        results::remove_others(out)?;
+    }
+    Ok(out.to_owned())
 }

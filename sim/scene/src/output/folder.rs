@@ -10,7 +10,9 @@ use tempfile::TempDir;
 #[derive(Debug)]
 pub struct Folder {
     target: PathBuf,
-    parts: TempDir,
+    /// Only this user's, as temporary folders are; `files` inside is as any other.
+    _parts: TempDir,
+    files: PathBuf,
 }
 
 impl Folder {
@@ -34,9 +36,12 @@ impl Folder {
         let parts = tempfile::Builder::new()
             .prefix(".crepitus-")
             .tempdir_in(parent)?;
+        let files = parts.path().join("files");
+        fs::create_dir(&files)?;
         Ok(Self {
             target: target.to_owned(),
-            parts,
+            _parts: parts,
+            files,
         })
     }
 
@@ -47,7 +52,7 @@ impl Folder {
     pub fn file(&self, name: &str) -> io::Result<BufWriter<File>> {
         Ok(BufWriter::with_capacity(
             1 << 16,
-            File::create(self.parts.path().join(name))?,
+            File::create(self.files.join(name))?,
         ))
     }
 
@@ -60,13 +65,35 @@ impl Folder {
         file.sync_all()
     }
 
-    /// Moves every file into place.
+    /// Moves the whole folder into place if nothing is there, in one step: of two programs only
+    /// one succeeds. False if something is; it is left as it is.
+    ///
+    /// # Errors
+    /// If it cannot be moved.
+    pub fn commit_new(&self) -> io::Result<bool> {
+        let Err(error) = fs::rename(&self.files, &self.target) else {
+            return Ok(true);
+        };
+        // Systems differ in what they say of a folder that is not empty.
+        if self.target.exists() {
+            Ok(false)
+        } else {
+            Err(error)
+        }
+    }
+
+    /// Another place for the files; it has to be in the same folder.
+    pub fn aim_at(&mut self, target: &Path) {
+        target.clone_into(&mut self.target);
+    }
+
+    /// Moves every file into place, beside those that are there.
     ///
     /// # Errors
     /// If one cannot be moved.
     pub fn commit(self) -> io::Result<()> {
         fs::create_dir_all(&self.target)?;
-        for entry in fs::read_dir(self.parts.path())? {
+        for entry in fs::read_dir(&self.files)? {
             let entry = entry?;
             fs::rename(entry.path(), self.target.join(entry.file_name()))?;
         }
@@ -101,6 +128,38 @@ mod tests {
             assert_eq!(fs::read_to_string(target.join("a.txt")).unwrap(), content);
         }
         assert_eq!(names(&home.path().join("out")), ["run"]);
+    }
+
+    #[test]
+    fn of_two_new_folders_one_is_there() {
+        let home = tempfile::tempdir().unwrap();
+        let target = home.path().join("run");
+        let write = |name: &str| {
+            let folder = Folder::create(&target).unwrap();
+            Folder::finish(folder.file(name).unwrap()).unwrap();
+            folder
+        };
+        let (first, mut second) = (write("a.txt"), write("b.txt"));
+        assert!(first.commit_new().unwrap());
+        assert!(!second.commit_new().unwrap());
+        second.aim_at(&home.path().join("run-2"));
+        assert!(second.commit_new().unwrap());
+        drop((first, second));
+        assert_eq!(names(home.path()), ["run", "run-2"]);
+        assert_eq!(names(&home.path().join("run-2")), ["b.txt"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn others_may_read_it_as_any_folder() {
+        use std::os::unix::fs::MetadataExt;
+        let home = tempfile::tempdir().unwrap();
+        let any = home.path().join("any");
+        fs::create_dir(&any).unwrap();
+        let target = home.path().join("run");
+        assert!(Folder::create(&target).unwrap().commit_new().unwrap());
+        let mode = |path: &Path| fs::metadata(path).unwrap().mode();
+        assert_eq!(mode(&target), mode(&any));
     }
 
     #[test]
