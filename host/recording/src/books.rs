@@ -149,6 +149,30 @@ impl Books {
         self.totals.dropped += samples;
     }
 
+    /// So many samples before the first one are damaged.
+    fn damaged_before(&mut self, samples: u64) {
+        let Some(segment) = self.segments.first_mut() else {
+            return;
+        };
+        let samples = samples.min(segment.first_tick);
+        if samples == 0 {
+            return;
+        }
+        segment.first_tick -= samples;
+        let gap = Gap {
+            row: 0,
+            first_tick: segment.first_tick,
+            samples,
+            cause: Cause::Damaged,
+        };
+        self.gaps.insert(0, gap);
+        self.gaps.truncate(LISTED_GAPS);
+        self.gap_count += 1;
+        self.totals.produced += samples;
+        self.totals.dropped += samples;
+        self.totals.damaged += samples;
+    }
+
     fn segment(&mut self, first_tick: u64, start: u8) {
         let segment = Segment {
             first_row: self.totals.received,
@@ -170,6 +194,8 @@ pub(crate) struct Ledger {
     said: u32,
     /// A part of the file before the next block is damaged.
     is_damaged: bool,
+    /// So is the part that says where the first subscription begins.
+    begin_is_unknown: bool,
 }
 
 impl Ledger {
@@ -203,13 +229,25 @@ impl Ledger {
             if self.is_past(start) {
                 return false;
             }
-            self.books.drive_restarts += u32::from(self.start.is_some());
-            // The device counts from its start, too.
-            self.begin(Begin {
-                first_tick: block.first_tick.saturating_sub(u64::from(block.dropped)),
-                dropped: 0,
-                start,
-            });
+            let begin = if self.start.is_some() {
+                self.books.drive_restarts += 1;
+                // The device counts from its start, too.
+                Begin {
+                    first_tick: block.first_tick.saturating_sub(u64::from(block.dropped)),
+                    dropped: 0,
+                    start,
+                }
+            } else {
+                // Where the subscription began is damaged: what the device has counted so far may
+                // have been before it.
+                self.begin_is_unknown = true;
+                Begin {
+                    first_tick: block.first_tick,
+                    dropped: block.dropped,
+                    start,
+                }
+            };
+            self.begin(begin);
         } else if block.first_tick < self.next_tick {
             return false;
         }
@@ -264,6 +302,9 @@ impl Ledger {
         let absent = received.saturating_sub(totals.received);
         let most = totals.damaged + totals.on_the_way();
         totals.damaged = totals.damaged.max(absent.min(most));
+        if core::mem::take(&mut self.begin_is_unknown) {
+            self.books.damaged_before(absent.saturating_sub(most));
+        }
     }
 
     pub(crate) fn books(&self) -> &Books {
@@ -301,6 +342,33 @@ mod tests {
             dropped,
             start,
         }
+    }
+
+    /// A device that nobody listened to for an hour has not sent 72 million samples.
+    #[test]
+    fn without_the_begin_of_the_subscription_nothing_is_missing_before_the_first_block() {
+        let mut ledger = Ledger::default();
+        ledger.damaged();
+        assert!(ledger.block(&block(72_000_000, 72_000_000, 1)));
+        assert!(ledger.block(&block(72_000_040, 72_000_020, 1)));
+        let totals = ledger.books().totals;
+        assert_eq!((totals.produced, totals.received), (60, 40));
+        assert_eq!((totals.dropped, totals.by_device), (20, 20));
+        // What the recorder had is known from then on.
+        ledger.expect_received(100);
+        let books = ledger.into_books();
+        let totals = books.totals;
+        assert_eq!((totals.produced, totals.received), (120, 40));
+        assert_eq!(
+            (totals.dropped, totals.by_device, totals.damaged),
+            (80, 20, 60)
+        );
+        assert_eq!(books.segments[0].first_tick, 72_000_000 - 60);
+        assert_eq!((books.gap_count, books.gaps[0].samples), (2, 60));
+        let mut recount = Recount::new(&books);
+        (72_000_000..72_000_020).for_each(|tick| recount.row(tick));
+        (72_000_040..72_000_060).for_each(|tick| recount.row(tick));
+        assert_eq!(recount.differences(), Vec::<String>::new());
     }
 
     /// Every cause once: sums, gaps, and the recount of the same rows.
