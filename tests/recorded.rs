@@ -12,7 +12,9 @@ use crepitus_recording::{Damage, Recording};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
 use support::{check_books, crepitus, names, recording, rows, run, stderr, stdout, summary};
 
 /// A recording of the simulated device, half a second long.
@@ -85,7 +87,7 @@ fn any_name_works_and_the_hint_can_be_pasted() {
 fn a_refused_recording_leaves_nothing() {
     let home = tempfile::tempdir().unwrap();
     let file = home.path().join("a");
-    // Coulomb's limit above what the device allows: arming is refused.
+    // A device that is not there; `sharing.rs` has one that refuses to arm.
     let output = run(&[
         "record",
         text(&file),
@@ -104,6 +106,36 @@ fn a_refused_recording_leaves_nothing() {
         "{}",
         stderr(&output)
     );
+}
+
+/// Its end goes by the file's name, which another recording may have by then.
+#[test]
+fn a_recording_that_was_moved_while_it_ran_replaces_no_other() {
+    let home = tempfile::tempdir().unwrap();
+    let other = recorded(home.path(), "other");
+    let file = home.path().join("a");
+    let mut program = crepitus()
+        .current_dir(home.path())
+        .args(["record", "--device", "sim", "--for", "20s", "a"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    while !file.exists() {
+        assert!(program.try_wait().unwrap().is_none(), "it has ended");
+        sleep(Duration::from_millis(1));
+    }
+    let moved = home.path().join("moved");
+    fs::rename(&file, &moved).unwrap();
+    fs::copy(&other, &file).unwrap();
+    let output = program.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let said = stderr(&output);
+    assert!(said.contains("is another recording now"), "{said}");
+    assert_eq!(fs::read(&file).unwrap(), fs::read(&other).unwrap());
+    let recording = Recording::open(&moved, Damage::Refuse).unwrap();
+    assert!(recording.is_complete());
+    assert!(recording.books().totals.received > 0);
 }
 
 #[test]

@@ -47,6 +47,7 @@ pub use recording::{Damage, Format, ReadError, Recording, Rows, seconds};
 pub use row::{COLUMNS, Row};
 pub use samples::Samples;
 
+use std::fs::File;
 use std::io;
 use std::path::Path;
 use tempfile::NamedTempFile;
@@ -78,16 +79,31 @@ pub fn mcap_writer() -> Option<Write> {
 /// # Errors
 /// Of the disk.
 pub fn new_file(path: &Path) -> io::Result<NamedTempFile> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
+    let folder = folder_of(path);
     let mut builder = tempfile::Builder::new();
     builder.prefix(".crepitus-");
     // The usual permissions, not those of a temporary file.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder)
+}
+
+/// Puts the name of a file on the disk; where folders cannot be opened the system does it.
+///
+/// # Errors
+/// Of the disk.
+pub fn sync_folder_of(path: &Path) -> io::Result<()> {
+    match File::open(folder_of(path)) {
+        Ok(folder) if cfg!(unix) => folder.sync_all(),
+        _ => Ok(()),
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
 }
 
 /// Lower-case hex digits.

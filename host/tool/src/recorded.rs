@@ -14,13 +14,15 @@ use crepitus_protocol::telemetry::Block;
 use crepitus_recording::{
     Damage, Metadata, RecordError, Recorder, Recording, Totals, Write, new_file, parquet_writer,
 };
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 /// A recording in progress.
 pub(crate) struct Recorded {
     recorder: Recorder,
+    /// Of the recording: what has its file's name in the end may be another one.
+    id: String,
     announced: Option<Revision>,
     status: StatusLine,
 }
@@ -36,6 +38,7 @@ impl Recorded {
         let metadata = Metadata::new(title, &handshake.comms, handshake.drive.as_ref());
         let mut recorded = Self {
             recorder: Recorder::create(file, &metadata).map_err(Failure::input)?,
+            id: metadata.id,
             announced: None,
             status: StatusLine::new(),
         };
@@ -56,6 +59,10 @@ impl Recorded {
     fn discard(self) -> Result<(), Failure> {
         let file = self.recorder.path().to_owned();
         drop(self.recorder);
+        let is_own = |recording: Recording| recording.metadata().id == self.id;
+        if !Recording::open(&file, Damage::Salvage).is_ok_and(is_own) {
+            return Ok(());
+        }
         fs::remove_file(&file).map_err(|e| Failure::at(&file, "cannot be removed", &e))
     }
 
@@ -66,7 +73,7 @@ impl Recorded {
         }
         let file = self.recorder.path().to_owned();
         let totals = self.recorder.finish().map_err(stopped)?;
-        in_final_format(&file);
+        in_final_format(&file, &self.id);
         Ok(Some(totals))
     }
 }
@@ -122,13 +129,22 @@ pub(crate) fn extension() -> &'static str {
 
 /// Replaces a finished recording by its Parquet file, if this program can. If
 /// that fails, the recording stays as it is.
-fn in_final_format(file: &Path) {
+fn in_final_format(file: &Path, id: &str) {
     let Some(writer) = parquet_writer() else {
         return;
     };
     // What ended the recording must not end this; but it may be stopped, too.
     interrupt::forget();
-    let made = Recording::open(file, Damage::Refuse)
+    let recording = Recording::open(file, Damage::Refuse);
+    if (recording.as_ref()).is_ok_and(|recording| recording.metadata().id != id) {
+        warn(format!(
+            "{} is another recording now: this one was moved while it ran, and stays in the format of a \
+             recording in progress",
+            file.display()
+        ));
+        return;
+    }
+    let made = recording
         .map_err(Failure::input)
         .and_then(|recording| written(&recording, file, Clash::Replace, writer));
     if let Err(Failure::Input(error) | Failure::Work(error)) = made {
@@ -184,13 +200,7 @@ pub(crate) fn written(
         })?,
     };
     // The name, too, outlives a power cut.
-    #[cfg(unix)]
-    out.parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-        .map_or_else(|| File::open("."), File::open)
-        .and_then(|folder| folder.sync_all())
-        .map_err(failed)?;
-    Ok(())
+    crepitus_recording::sync_folder_of(out).map_err(failed)
 }
 
 fn exists(out: &Path) -> Failure {

@@ -61,6 +61,8 @@ pub struct Background {
     /// Bytes that wait.
     waiting: Arc<AtomicU64>,
     thread: Option<JoinHandle<io::Result<()>>>,
+    /// Bytes were left out because too many waited: what follows them would be damage.
+    has_left_out: bool,
     /// The error with which the thread has ended.
     cause: Option<(io::ErrorKind, String)>,
 }
@@ -75,6 +77,7 @@ impl Background {
             orders: Some(orders),
             waiting,
             thread: Some(thread::spawn(move || work(disk, &due, &of_thread))),
+            has_left_out: false,
             cause: None,
         }
     }
@@ -93,7 +96,8 @@ impl Disk for Background {
         let waiting = self
             .waiting
             .fetch_add(bytes.len() as u64, Ordering::Relaxed);
-        if waiting > MOST_WAITING {
+        self.has_left_out |= waiting > MOST_WAITING;
+        if self.has_left_out {
             return Err(io::Error::new(
                 io::ErrorKind::TimedOut,
                 "the disk is too slow: three minutes of samples wait for it",
@@ -144,4 +148,42 @@ fn work(mut disk: impl Disk, due: &Receiver<Order>, waiting: &AtomicU64) -> io::
         }
     }
     disk.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Takes nothing before it may.
+    struct Stalls(Receiver<()>);
+
+    impl Disk for Stalls {
+        fn append(&mut self, _: &[u8]) -> io::Result<()> {
+            let _ = self.0.recv();
+            Ok(())
+        }
+
+        fn sync(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn behind_bytes_that_were_left_out_nothing_is_written() {
+        let (go_on, may) = channel();
+        let mut disk = Background::new(Stalls(may));
+        let piece = vec![0; 8 << 20];
+        let taken = (0..20).take_while(|_| disk.append(&piece).is_ok()).count();
+        assert!((8..=9).contains(&taken), "{taken}");
+        // The disk recovers.
+        for _ in 0..taken {
+            go_on.send(()).unwrap();
+        }
+        while disk.waiting.load(Ordering::Relaxed) > 2 * piece.len() as u64 {
+            thread::yield_now();
+        }
+        let error = disk.append(&[1]).expect_err("bytes are missing before it");
+        assert_eq!(error.kind(), io::ErrorKind::TimedOut);
+        assert!(disk.finish().is_ok());
+    }
 }

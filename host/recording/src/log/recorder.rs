@@ -73,12 +73,15 @@ impl Recorder {
         let head = head(metadata).map_err(failed)?;
         let mut file = crate::new_file(path).map_err(failed)?;
         file.write_all(&head).map_err(failed)?;
+        file.as_file().sync_all().map_err(failed)?;
         let file = file
             .persist_noclobber(path)
             .map_err(|error| match error.error.kind() {
                 io::ErrorKind::AlreadyExists => RecordError::Exists(path.to_owned()),
                 _ => failed(error.error),
             })?;
+        // And its name: a power cut in the first second leaves a file, too.
+        crate::sync_folder_of(path).map_err(failed)?;
         Ok(Self::behind(&head, Background::new(file), path, metadata))
     }
 }
