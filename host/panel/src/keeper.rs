@@ -32,6 +32,7 @@ use lessons::Held;
 use recording::Recorded;
 use serde_json::{Value, json};
 use status::Speed;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
@@ -184,20 +185,26 @@ impl<'p, T: Transport> Keeper<'p, T> {
         Ok(keeper)
     }
 
-    /// Runs until the program is asked to end; then disarms, and closes what is open.
+    /// Runs until the program is asked to end; then disarms, also after a panic, and closes what
+    /// is open.
     ///
     /// # Errors
     /// The device did not disarm.
     pub(crate) fn run(mut self) -> Result<(), Error> {
-        while !self.program.has_ended() {
-            self.step();
-        }
+        let result = catch_unwind(AssertUnwindSafe(|| {
+            while !self.program.has_ended() {
+                self.step();
+            }
+        }));
         // Torque first, then files.
         let closed = if self.client.is_armed() {
             self.client.disarm()
         } else {
             Ok(())
         };
+        if let Err(panic) = result {
+            resume_unwind(panic);
+        }
         self.end_recording();
         self.save_lesson();
         self.wait_for_files();

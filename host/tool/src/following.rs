@@ -83,14 +83,22 @@ pub(crate) fn follow(
     if arm {
         client.arm().map_err(|error| failure_with(client, error))?;
     }
-    let result = catch_unwind(AssertUnwindSafe(|| run(client, time, arm, follower)));
+    disarming(client, |client| run(client, time, arm, follower))
+}
+
+/// Does what may arm, and disarms behind it: also after an error or a panic.
+pub(crate) fn disarming<T>(
+    client: &mut Client<Line>,
+    work: impl FnOnce(&mut Client<Line>) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    let result = catch_unwind(AssertUnwindSafe(|| work(client)));
     let disarmed = if client.is_armed() {
         client.disarm().map_err(failure)
     } else {
         Ok(())
     };
     match result {
-        Ok(result) => result.and_then(|end| disarmed.map(|()| end)),
+        Ok(result) => result.and_then(|done| disarmed.map(|()| done)),
         Err(panic) => resume_unwind(panic),
     }
 }

@@ -3,11 +3,14 @@ use crate::shared::Shared;
 use crate::tokens::Tokens;
 use crepitus_client::{Client, Error, Transport, TransportError};
 use crepitus_connection::Simulated;
-use crepitus_protocol::Session;
+use crepitus_protocol::host::{Operation, Request};
+use crepitus_protocol::{Decoder, Lane, Session};
 use crepitus_scene::preset::Preset;
 use crepitus_scene::{Overrides, shipped};
 use serde_json::Value;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
@@ -16,10 +19,21 @@ struct Flood {
     device: Simulated,
     /// From now on, and how often bytes were asked for since.
     received: Option<u32>,
+    /// Decoder of what is sent to it, and the requests to disarm in it.
+    ear: Decoder,
+    disarms: Arc<AtomicU32>,
 }
 
 impl Transport for Flood {
     fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
+        for byte in bytes {
+            let body = self.ear.push(*byte).and_then(Result::ok);
+            let request = body.filter(|body| body.lane() == Some(Lane::Request));
+            let request: Option<Request> = request.and_then(|body| body.message());
+            if request.is_some_and(|request| request.operation == Operation::Disarm) {
+                self.disarms.fetch_add(1, Ordering::Relaxed);
+            }
+        }
         self.device.send(bytes)
     }
 
@@ -49,8 +63,11 @@ impl Transport for Flood {
     }
 }
 
-/// A program without presets, that nobody ends.
-struct Alone;
+/// A program without presets, that nobody ends; it may end with a panic.
+#[derive(Default)]
+struct Alone {
+    panics: bool,
+}
 
 impl Program<Flood> for Alone {
     fn explain(&self, _: &mut Client<Flood>, error: Error) -> String {
@@ -70,24 +87,45 @@ impl Program<Flood> for Alone {
     }
 
     fn has_ended(&self) -> bool {
+        assert!(!self.panics, "as a mistake would");
         false
     }
 }
 
-#[test]
-fn pages_have_their_turn_while_samples_come_faster_than_they_are_taken() {
+/// A keeper of a simulated device, to which nobody gives orders.
+fn keeper(program: &Alone) -> Keeper<'_, Flood> {
     let scene =
         shipped::scene(Path::new("passive-examination"), &Overrides::default()).expect("a scene");
     let flood = Flood {
         device: Simulated::of(&scene).expect("a device"),
         received: None,
+        ear: Decoder::new(),
+        disarms: Arc::default(),
     };
     let client = Client::connect(flood).expect("a connection");
     let (orders, inbox) = mpsc::channel();
     let (questions, _) = mpsc::channel();
     let tokens = Tokens::draw().expect("a secret");
     let shared = Arc::new(Shared::new(tokens, Value::Null, orders, questions));
-    let mut keeper = Keeper::new(client, &Alone, shared, inbox, None).expect("it answers");
+    Keeper::new(client, program, shared, inbox, None).expect("it answers")
+}
+
+/// Torque ends with what the keeper sends, not with the lease.
+#[test]
+fn a_panic_disarms_first() {
+    let program = Alone { panics: true };
+    let mut keeper = keeper(&program);
+    keeper.client.zero().expect("a zero");
+    keeper.client.arm().expect("armed");
+    let disarms = keeper.client.transport_mut().disarms.clone();
+    assert!(catch_unwind(AssertUnwindSafe(|| keeper.run())).is_err());
+    assert_eq!(disarms.load(Ordering::Relaxed), 1);
+}
+
+#[test]
+fn pages_have_their_turn_while_samples_come_faster_than_they_are_taken() {
+    let program = Alone::default();
+    let mut keeper = keeper(&program);
     for _ in 0..100 {
         keeper.client.transport_mut().received = Some(0);
         keeper.step();

@@ -4,6 +4,7 @@ use super::finding::{Finding, Verdict};
 use super::prepared::{Prepared, all_off};
 use super::step::Step;
 use crate::failure::Failure;
+use crate::following::disarming;
 use crate::line::{Line, failure};
 use crepitus_client::{Client, Error};
 use crepitus_connection::device_text;
@@ -18,12 +19,10 @@ pub(super) fn found(client: &mut Client<Line>) -> Result<Finding, Failure> {
 }
 
 fn pushed(client: &mut Client<Line>) -> Result<Finding, Failure> {
-    let armed = client.arm();
-    let status = client.status().map_err(failure);
-    if client.is_armed() {
-        client.disarm().map_err(failure)?;
-    }
-    let status = status?;
+    let (armed, status) = disarming(client, |client| {
+        let armed = client.arm();
+        Ok((armed, client.status().map_err(failure)?))
+    })?;
     match armed {
         Ok(()) if status.polarity_proven => Ok(Finding::new(Step::Polarity, Verdict::Good)
             .remark("the drive armed; its push of 1.2 A moved the encoder the way it should")),
