@@ -123,6 +123,20 @@ fn a_repeated_run_finds_its_recording_from_anywhere_and_notices_another_one() {
 }
 
 #[test]
+fn a_run_of_another_version_is_repeated_with_a_warning() {
+    let home = tempfile::tempdir().unwrap();
+    let run = ["fig6-ideal-cycle", "--set", "duration_s=0.1", "--out", "a"];
+    assert_eq!(done(home.path(), &run), "");
+    let file = home.path().join("a/summary.json");
+    assert_eq!(done(home.path(), &["a/summary.json", "--out", "b"]), "");
+    let mut summary = summary(&home.path().join("a"));
+    summary["crepitus_version"] = "0.0.7".into();
+    fs::write(&file, summary.to_string()).unwrap();
+    let said = done(home.path(), &["a/summary.json", "--out", "c"]);
+    assert!(said.contains("was of crepitus 0.0.7"), "{said}");
+}
+
+#[test]
 fn a_run_without_a_trace_leaves_that_of_the_same_run() {
     let home = tempfile::tempdir().unwrap();
     let run = ["fig6-ideal-cycle", "--set", "duration_s=0.1", "--out", "a"];

@@ -95,8 +95,9 @@ fn serial(port: &str, program: &str) -> Result<Connection, OpenError> {
         .map_err(OpenError::Transport)
 }
 
-/// Returns whether a name is a port: a path, or `COM` with a number.
-fn is_port(name: &str) -> bool {
+/// Whether a name is a port, and not the name of a simulated device: a path, or `COM` with a
+/// number.
+pub fn is_port(name: &str) -> bool {
     let of_windows = name
         .get(..3)
         .filter(|start| start.eq_ignore_ascii_case("COM"))

@@ -25,7 +25,7 @@ pub enum OpenError {
     /// No device of this name is served.
     #[error(
         "unknown device {name:?}: expected a port, `sim`, `emulated`, or a name from `crepitus devices`; \
-         `crepitus serve-sim --name {name}` starts a simulated device of this name"
+         `crepitus serve-sim --name NAME` starts a simulated device"
     )]
     Unknown {
         /// The name.

@@ -109,8 +109,18 @@ pub struct Source {
     pub file: PathBuf,
     /// Its text.
     pub text: String,
-    /// Of a run that is repeated: its summary, and the SHA-256 of its recording.
-    repeated: Option<(PathBuf, Option<String>)>,
+    /// The run that is repeated.
+    repeated: Option<Repeated>,
+}
+
+/// A run that is repeated.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Repeated {
+    summary: PathBuf,
+    /// Of the recording that it was given.
+    data_sha256: Option<String>,
+    /// Of the program.
+    version: Option<String>,
 }
 
 impl Source {
@@ -162,11 +172,15 @@ impl Source {
                 "this is not the summary of a run: `scene` or `scene_as_run` is missing",
             ));
         };
-        let hash = summary["data"]["sha256"].as_str().map(str::to_owned);
+        let word = |value: &Value| value.as_str().map(str::to_owned);
         Ok(Self {
             file: file.into(),
             text: toml.to_owned(),
-            repeated: Some((path.to_owned(), hash)),
+            repeated: Some(Repeated {
+                summary: path.to_owned(),
+                data_sha256: word(&summary["data"]["sha256"]),
+                version: word(&summary["crepitus_version"]),
+            }),
         })
     }
 
@@ -175,21 +189,29 @@ impl Source {
     /// # Errors
     /// As [`Scene::parse`]; or the recording is not the one of the run that is repeated.
     pub fn scene(&self, overrides: &Overrides) -> Result<Scene, SceneError> {
-        let scene = Scene::parse(&self.file, &self.text, overrides)?;
-        let Some((summary, then)) = &self.repeated else {
+        let mut scene = Scene::parse(&self.file, &self.text, overrides)?;
+        let Some(repeated) = &self.repeated else {
             return Ok(scene);
         };
-        match (then, &scene.data) {
-            (Some(then), Some(now)) if *then != now.sha256 => Err(whole(
-                summary,
+        if let (Some(then), Some(now)) = (&repeated.data_sha256, &scene.data)
+            && *then != now.sha256
+        {
+            return Err(whole(
+                &repeated.summary,
                 format!(
                     "{} has changed since that run: its SHA-256 was {then}, and is {}",
                     now.file.display(),
                     now.sha256
                 ),
-            )),
-            _ => Ok(scene),
+            ));
         }
+        let version = env!("CARGO_PKG_VERSION");
+        if let Some(then) = repeated.version.as_ref().filter(|then| *then != version) {
+            scene.warnings.push(format!(
+                "the run that is repeated was of crepitus {then}, and this is {version}: its numbers may differ"
+            ));
+        }
+        Ok(scene)
     }
 }
 

@@ -22,7 +22,7 @@ Examples:
 Every sample of the drive, 20000 a second, goes to FILE, with the parameters, the devices, and the \
 accounting of what is missing. While recording, FILE can be read whatever happens to this program: \
 `report` says first what is missing. When the recording has ended, FILE becomes a Parquet file, which \
-pandas, polars and DuckDB read, if this program was built with `--features parquet`. About 20 MB a \
+pandas, polars and DuckDB read, if this program was built with `--features parquet`. About 23 MB a \
 minute while recording, 6 MB in the end.")]
 pub(crate) struct Arguments {
     /// The file, with any name; it must not exist.

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crepitus_client::discovery::{ServedName, user_folder};
-use crepitus_connection::Clock;
+use crepitus_connection::{Clock, is_port};
 use crepitus_usb::cabled::CabledDevice;
 use crepitus_usb::pty::Pty;
 use serde_json::json;
@@ -17,11 +17,11 @@ const EXCHANGE_TICKS: u64 = 20;
 /// Rejects a name that cannot be one of a device.
 pub(super) fn check(name: &str) -> Result<(), Failure> {
     let is_plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
-    let is_reserved = ["", "sim", "emulated", "shared"].contains(&name);
+    let is_reserved = ["", "sim", "emulated", "shared"].contains(&name) || is_port(name);
     if is_reserved || !name.chars().all(is_plain) {
         return Err(Failure::Input(format!(
-            "--name {name:?}: expected letters, digits, `-` and `_`, and not `sim`, `emulated` or `shared`, \
-             which are reserved"
+            "--name {name:?}: expected letters, digits, `-` and `_`, and not `sim`, `emulated`, `shared` or a port of \
+             Windows such as `COM3`, which `--device` takes for something else"
         )));
     }
     Ok(())
