@@ -16,9 +16,10 @@
 //! the power of the second into a smaller one: an eighth is reached where ωL = 2.6·R.
 //! A sensor that is stuck, or that shows the other sign, violates one of the two.
 //!
-//! 3.1 A is what the sensor can tell from more. No voltage is put out that drives more than
-//! 3.1/1.1 A through R, so a coil of nine tenths of R is whole wherever it is used; one of less
-//! is not at the largest voltages, so R has to be known.
+//! 3.1 A is what the sensor can tell from more. No voltage is put out that, with the back-EMF,
+//! drives more than 3.1/1.1 A through R: a coil of nine tenths of R is then never taken for a
+//! short. Where the back-EMF alone would, voltages that are compared stay, and a mass that is
+//! thrown against its voltage may be.
 //!
 //! Not detected: a mass that is stuck or strikes its stops, as its back-EMF is a few percent of
 //! the voltage, and a fifth of it at the resonance; a coil whose two wires are swapped, as current and voltage
@@ -50,6 +51,10 @@ const MISSING_TICKS: u8 = 3;
 
 /// How much more than believed a coil may take where it is driven most.
 const LEAST_MARGIN: f64 = 1.1;
+
+/// Largest voltage over the root of the mean square from which on it is compared, at least: that
+/// of a sine, and some.
+const PEAK_OF_COMPARED: f64 = 1.7;
 
 /// Ticks with too much current until the fault.
 const SHORT_TICKS: u8 = 5;
@@ -93,6 +98,10 @@ const HEATING: f32 = (TICK_S / HEATING_S) as f32;
 /// Excursion of a chirp that is played, over the stroke, by the parameters in use: those
 /// of an actuator that is not identified yet may be wrong by half.
 const CHIRP_STROKES: f64 = 2.0;
+
+/// Mean square of the current that is as good as cold, A²: a coil that is not used any more
+/// is watched down to here.
+const COLD_A2: f32 = 1e-4;
 
 /// Share of the largest back-EMF, squared, above which voltages are compared.
 const EMF_SHARE: f32 = 0.25;
@@ -149,10 +158,10 @@ impl Coil {
         (self.next, self.has_next) = (plan, plan != self.plan);
     }
 
-    /// True if an actuator is configured, or a plan is pending.
+    /// True if an actuator is configured, a plan is pending, or the coil is still warm.
     #[inline]
-    pub fn is_fitted(&self) -> bool {
-        self.plan.is_some() || self.has_next
+    pub fn is_in_use(&self) -> bool {
+        self.plan.is_some() || self.has_next || self.means.heat_a2 > COLD_A2
     }
 
     /// The latched fault.
@@ -201,6 +210,7 @@ impl Coil {
             (self.plan, self.has_next) = (self.next, false);
         }
         let Some(plan) = &self.plan else {
+            self.means.cool();
             return self.sleep();
         };
         if let Some(last_v) = self.last_v {
@@ -309,7 +319,8 @@ impl CoilPlan {
         let most_m = CHIRP_STROKES * s.stroke_mm * 1e-3;
         let chirp_v = most_m * (2.0 * ratio).min(1.0) / m_per_v;
         let told_v = f64::from(SENSOR_A) / LEAST_MARGIN * s.resistance_ohm - emf_v;
-        let supplied_v = (f64::from(LARGEST_COIL_DUTY) * s.supply_v).min(told_v.max(0.0));
+        let told_v = told_v.max(PEAK_OF_COMPARED * compared_v2.sqrt());
+        let supplied_v = told_v.min(f64::from(LARGEST_COIL_DUTY) * s.supply_v);
         let continuous_a2 = s.continuous_current_a * s.continuous_current_a;
         Self {
             supply_v: s.supply_v as f32,

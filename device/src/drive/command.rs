@@ -165,7 +165,7 @@ impl Command {
             // It would go on with the next actuator.
             (self.chirp, self.has_chirped) = (None, false);
         }
-        self.has_coil = self.coil.is_fitted();
+        self.has_coil = self.coil.is_in_use();
         self.revision = plan.revision;
         counters.count(DriveCounter::Commits);
     }

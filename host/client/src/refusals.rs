@@ -237,7 +237,7 @@ fn drive_text(
         ),
         DriveRefusal::ChirpOutOfRange => write!(
             f,
-            "the drive rejects `{request}`: the amplitude is above 0.92 of the supply, or would drive the mass beyond \
+            "the drive rejects `{request}`: the amplitude is above 0.92 of the supply or a current that the sensor can tell, or would drive the mass beyond \
              twice its stroke by the parameters in use, or a frequency or the duration is out of range; lower it"
         ),
         DriveRefusal::ChirpPlaying => write!(

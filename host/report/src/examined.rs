@@ -183,7 +183,7 @@ fn beats(found: &Found, rows: &mut Vec<Row>) {
         let stretch = format!("{} at {}", angle(event.angle_rad), speed(event.omega_rad_s));
         rows.push((
             format!("stretch {n}"),
-            format!("{stretch}: {}", lasted(bout)),
+            format!("{stretch}: {}", lasted(bout, found.beats_are_told)),
         ));
     }
     if found.bouts.is_empty() {
@@ -202,22 +202,29 @@ fn beats(found: &Found, rows: &mut Vec<Row>) {
 }
 
 /// How many beats, how long, and the grade that the Spinal Cord Assessment Tool for
-/// Spastic Reflexes gives for that.
-fn lasted(bout: &Bout) -> String {
-    let length_s = bout.last_s - bout.start.time_s;
+/// Spastic Reflexes gives for that. Where the torque is of more than clonus, beats cannot be told
+/// apart, and its phases say how long it lasted.
+fn lasted(bout: &Bout, beats_are_told: bool) -> String {
+    let until_s = match bout.end {
+        Some((_, end_s)) if !beats_are_told => end_s,
+        _ => bout.last_s,
+    };
+    let length_s = until_s - bout.start.time_s;
     let (grade, words) = match length_s {
-        _ if bout.beats == 0 => (0, "no reaction"),
+        _ if beats_are_told && bout.beats == 0 => (0, "no reaction"),
         s if s < 3.0 => (1, "mild, less than 3 s"),
         s if s <= 10.0 => (2, "moderate, 3 to 10 s"),
         _ => (3, "severe, more than 10 s"),
     };
     let beats = match bout.beats {
+        _ if !beats_are_told => "beats that cannot be told apart".to_owned(),
         1 => "1 beat".to_owned(),
         n => format!("{n} beats"),
     };
     let end = match bout.end {
-        Some(Word::Done) => "ended by itself",
-        Some(_) => "ended as the muscle was let go",
+        Some((Word::Done, _)) => "ended by itself",
+        Some(_) => "ended as the muscle was let go, so at least",
+        None if !beats_are_told => return format!("{beats}, went on to the end"),
         None => "went on to the end, so at least",
     };
     format!(
@@ -245,5 +252,65 @@ fn rates(found: &Found, rows: &mut Vec<Row>) {
             count(rate.count)
         };
         rows.push((name.to_owned(), value));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_scene::trace::SymptomEvent;
+
+    fn bout(beats: u32, last_s: f64, end: Option<(Word, f64)>) -> Bout {
+        let start = SymptomEvent {
+            time_s: 1.0,
+            effect: "clonus",
+            word: Word::Start,
+            angle_rad: 0.0,
+            omega_rad_s: 2.0,
+            torque_before_nm: 0.0,
+            torque_after_nm: 0.0,
+        };
+        Bout {
+            start,
+            beats,
+            last_s,
+            end,
+        }
+    }
+
+    #[test]
+    fn what_the_examiner_ended_or_cannot_be_told_apart_is_no_grade_of_its_own() {
+        let done = Some((Word::Done, 5.2));
+        let stop = Some((Word::Stop, 5.2));
+        for (bout, are_told, expected) in [
+            (
+                bout(20, 5.0, done),
+                true,
+                "20 beats in 4.0 s, ended by itself; SCATS 2: moderate, 3 to 10 s",
+            ),
+            (
+                bout(20, 5.0, stop),
+                true,
+                "20 beats in 4.0 s, ended as the muscle was let go, so at least; SCATS 2: moderate, 3 to 10 s",
+            ),
+            (
+                bout(0, 1.0, stop),
+                true,
+                "0 beats in 0.0 s, ended as the muscle was let go, so at least; SCATS 0: no reaction",
+            ),
+            // With crepitus or another disorder in the torque.
+            (
+                bout(0, 1.0, done),
+                false,
+                "beats that cannot be told apart in 4.2 s, ended by itself; SCATS 2: moderate, 3 to 10 s",
+            ),
+            (
+                bout(0, 1.0, None),
+                false,
+                "beats that cannot be told apart, went on to the end",
+            ),
+        ] {
+            assert_eq!(lasted(&bout, are_told), expected);
+        }
     }
 }

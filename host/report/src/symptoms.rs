@@ -67,7 +67,7 @@ impl Symptom {
             places,
             path: Path::new(),
             timeline: Timeline::new(),
-            found: Found::default(),
+            found: Found::new(places.torque.is_some()),
             state: None,
             last_nm: 0.0,
         }
@@ -120,7 +120,7 @@ impl Symptom {
         };
         let beat = (self.words.effect == "clonus" && phase == 1)
             .then_some(Word::Beat)
-            .filter(|_| self.last_nm == 0.0 && nm != 0.0);
+            .filter(|_| self.found.beats_are_told && self.last_nm == 0.0 && nm != 0.0);
         for word in word.into_iter().chain(beat) {
             self.noted(&SymptomEvent {
                 time_s: sample.time,
@@ -183,6 +183,10 @@ impl Symptoms {
             if places.torque.is_some() || of_all {
                 list.push(Symptom::new(words, places));
             }
+        }
+        // The torque of all is its own where there is nothing else.
+        if let [symptom] = &mut list[..] {
+            symptom.found.beats_are_told |= setup.levels.is_none();
         }
         let own = list.iter().filter(|symptom| !symptom.shows_all()).count();
         let together = (own > 1 || (own == 1 && total.is_some())).then(|| Together {

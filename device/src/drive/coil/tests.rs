@@ -151,6 +151,71 @@ fn a_whole_coil_is_no_short_at_the_largest_voltage() {
     }
 }
 
+/// One whose back-EMF is above the supply, as of a long stroke with a strong magnet.
+#[test]
+fn an_actuator_with_a_large_back_emf_is_driven_and_compared() {
+    let settings = VibrationActuatorSettings {
+        force_constant_n_per_a: 3.9,
+        resistance_ohm: 2.5,
+        stroke_mm: 6.3,
+        moving_mass_g: 155.0,
+        resonance_hz: 35.0,
+        damping_ratio: 0.2,
+        ..SETTINGS()
+    };
+    let mut rig = Rig::new(&settings);
+    let output = rig.tick(20.0, Some);
+    assert!(
+        matches!(output, CoilOutput::Driven(duty) if duty > 0.9),
+        "{output:?}"
+    );
+    // A sine of the largest voltage is above what is compared: an open coil is found.
+    let found = rig.until(sine(35.0, 20.0), |_| Some(0.0));
+    assert_eq!(found.map(|(_, fault)| fault), Some(CoilFault::Open));
+}
+
+/// The command begins without heat when it is switched on again, and so does the check of a coil
+/// that has cooled meanwhile.
+#[test]
+fn a_coil_that_is_not_used_cools() {
+    let settings = SETTINGS();
+    let continuous_v = settings.continuous_current_a as f32 * settings.resistance_ohm as f32;
+    let loud = |n: u32| {
+        if (n / 20).is_multiple_of(2) {
+            continuous_v
+        } else {
+            -continuous_v
+        }
+    };
+    let louder = |n: u32| 1.4 * loud(n);
+    let mut rig = Rig::new(&settings);
+    rig.inductance_h = 1e-5;
+    for n in 0..600_000 {
+        rig.tick(loud(n), Some);
+    }
+    assert_eq!(rig.coil.fault(), None);
+    for pause_s in [0, 100] {
+        let plan = rig.coil.plan;
+        let mut again = Rig {
+            coil: rig.coil,
+            inductance_h: 1e-5,
+            ..Rig::new(&settings)
+        };
+        again.coil.change(None);
+        for _ in 0..=pause_s * 20_000 {
+            again.tick(0.0, Some);
+        }
+        assert_eq!(again.coil.is_in_use(), pause_s == 0);
+        again.coil.change(plan);
+        again.tick(0.0, Some);
+        for n in 0..100_000 {
+            again.tick(louder(n), Some);
+        }
+        let fault = (pause_s == 0).then_some(CoilFault::Hot);
+        assert_eq!(again.coil.fault(), fault, "after {pause_s} s");
+    }
+}
+
 #[test]
 fn the_duty_is_the_share_of_the_supply_within_what_the_converter_allows() {
     let mut coil = Coil::new(Some(CoilPlan::new(&SETTINGS())));
@@ -253,10 +318,10 @@ fn a_coil_that_takes_more_than_the_command_believes_gets_hot() {
 #[test]
 fn a_plan_is_exchanged_when_the_command_is_silent_or_nothing_is_driven() {
     let mut coil = Coil::new(None);
-    assert!(!coil.is_fitted());
+    assert!(!coil.is_in_use());
     let five = CoilPlan::new(&SETTINGS());
     coil.change(Some(five));
-    assert!(coil.is_fitted());
+    assert!(coil.is_in_use());
     assert_eq!(coil.tick(0.0, true, None, false), CoilOutput::Driven(0.0));
     let ten = CoilPlan::new(&VibrationActuatorSettings {
         supply_v: 10.0,
@@ -281,7 +346,7 @@ fn a_plan_is_exchanged_when_the_command_is_silent_or_nothing_is_driven() {
         CoilOutput::Driven(0.1)
     );
     assert_eq!(coil.tick(1.0, false, Some(0.0), false), CoilOutput::Asleep);
-    assert!(!coil.is_fitted());
+    assert!(!coil.is_in_use());
     // One that is the same exchanges nothing.
     let mut coil = Coil::new(Some(five));
     coil.change(Some(five));

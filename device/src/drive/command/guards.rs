@@ -142,7 +142,7 @@ impl Command {
         if was_driven {
             self.batch.add_coil(coil_a, output == CoilOutput::Asleep);
         }
-        self.has_coil = self.coil.is_fitted();
+        self.has_coil = self.coil.is_in_use();
         output
     }
 

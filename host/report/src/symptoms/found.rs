@@ -24,8 +24,8 @@ pub(crate) struct Bout {
     pub(crate) beats: u32,
     /// When the last beat began so far, s.
     pub(crate) last_s: f64,
-    /// What ended it.
-    pub(crate) end: Option<Word>,
+    /// What ended it, and when, s.
+    pub(crate) end: Option<(Word, f64)>,
 }
 
 /// A beat.
@@ -48,6 +48,8 @@ pub(crate) struct Rate {
 pub(crate) struct Found {
     pub(crate) met: Vec<Met>,
     pub(crate) bouts: Vec<Bout>,
+    /// Whether a beat shows: not in the torque of several effects together.
+    pub(crate) beats_are_told: bool,
     pub(crate) beats: Vec<Beat>,
     pub(crate) rates: Vec<Rate>,
     pub(crate) loops: Loops,
@@ -68,6 +70,14 @@ const SLOWEST_RAD_S: f64 = std::f64::consts::PI / 180.0;
 const RELEASED: f64 = 0.9;
 
 impl Found {
+    /// Nothing yet.
+    pub(crate) fn new(beats_are_told: bool) -> Self {
+        Self {
+            beats_are_told,
+            ..Self::default()
+        }
+    }
+
     /// Most of each kind that is kept.
     pub(crate) const MOST: usize = 1000;
 
@@ -112,7 +122,7 @@ impl Found {
             (_, Word::Beat) => self.beat(event),
             (_, word @ (Word::Stop | Word::Done)) => {
                 if let Some(bout) = self.bouts.last_mut() {
-                    bout.end = bout.end.or(Some(word));
+                    bout.end = bout.end.or(Some((word, event.time_s)));
                 }
             }
             (_, word @ (Word::Snap | Word::Give)) => self.count(word),

@@ -158,7 +158,7 @@ fn a_collapse_an_end_and_beats_are_found() {
     let (_, symptoms) = examined(6, STEPPED);
     let Found { beats, bouts, .. } = &symptoms.list[0].found;
     assert_eq!(
-        (bouts.len(), bouts[0].beats, bouts[0].end),
+        (bouts.len(), bouts[0].beats, bouts[0].end.map(|end| end.0)),
         (1, 8, Some(Word::Done))
     );
     for (pair, ms) in beats.windows(2).zip([216.7, 191.7, 179.2, 172.9]) {

@@ -45,7 +45,7 @@ checks the other.
 The device plays the chirp while it is armed, and the motor goes on as ever: let the joint stand still. The actuator \
 has to be on and its own command silent: `crepitus params set vibration-actuator.render=on \
 vibration-actuator.gain=0`. The chirp ends with the torque, by any key of `arm`, a stop or a fault, and is limited \
-to 0.92 of the supply and to twice the stroke by the parameters in use.
+to 0.92 of the supply, to a current that the sensor can tell, and to twice the stroke by the parameters in use.
 
 FILE is CSV with the columns t_s, volts, amperes: evenly spaced, at least 500 rows a second (faster ones are \
 averaged), from before the chirp until 0.5 s after its end. Any logarithmic or linear chirp from about 8 to \

@@ -204,7 +204,7 @@ fn its_driver_opens_it_without_the_program_and_the_motor_goes_on() {
 }
 
 #[test]
-fn its_current_is_measured_and_a_dead_converter_is_noticed() {
+fn its_current_is_measured_and_a_short_is_noticed() {
     let Some(mut host) = with_actuator(&[], Flash::ZeroWaitStates) else {
         return;
     };

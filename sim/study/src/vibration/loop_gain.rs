@@ -100,6 +100,8 @@ struct Linear {
     flexure: (f64, f64),
     stick: f64,
     actuator: VibrationActuatorSettings,
+    /// What the device believes of it.
+    believed: VibrationActuatorSettings,
 }
 
 /// A number of an effect in a scene, or its default.
@@ -130,11 +132,10 @@ impl Linear {
             .listed
             .iter()
             .find(|l| l.effect.name == reaction_mass::EFFECT.name);
-        let mut actuator = moving.map_or_else(VibrationActuatorSettings::default, |l| {
+        let actuator = moving.map_or_else(VibrationActuatorSettings::default, |l| {
             reaction_mass::as_settings(&l.given)
         });
-        let settings = scene.effect_settings().vibration_actuator;
-        actuator.corner_hz = settings.map_or(actuator.corner_hz, |s| s.corner_hz);
+        let believed = scene.effect_settings().vibration_actuator;
         let mass_kg = actuator.moving_mass_g * 1e-3;
         let omega = actuator.resonance_rad_s();
         Self {
@@ -163,6 +164,7 @@ impl Linear {
             stick: scene
                 .crepitus
                 .map_or(0.0, |c| c.settings.parameters.stiffness_nm_per_rad),
+            believed: believed.unwrap_or(actuator),
             actuator,
         }
     }
@@ -205,13 +207,13 @@ impl Linear {
     fn gain(&self, hz: f64, late_s: f64) -> Complex<f64> {
         let omega = TAU * hz;
         let s = Complex::new(0.0, omega);
-        let corner = TAU * self.actuator.corner_hz;
-        let resonance = self.actuator.resonance_rad_s();
+        let corner = TAU * self.believed.corner_hz;
+        let resonance = self.believed.resonance_rad_s();
         let [first, second] = [TAU / 16.0, 3.0 * TAU / 16.0]
             .map(|angle: f64| s * s + 2.0 * angle.sin() * corner * s + corner * corner);
         let equaliser =
-            s * s + 2.0 * self.actuator.damping_ratio * resonance * s + resonance * resonance;
-        let command = self.actuator.volts_per_nm() * (s * s / first) * (equaliser / second);
+            s * s + 2.0 * self.believed.damping_ratio * resonance * s + resonance * resonance;
+        let command = self.believed.volts_per_nm() * (s * s / first) * (equaliser / second);
         let per_volt = self.actuator.force_constant_n_per_a / self.actuator.resistance_ohm;
         let delay = (-s * (COIL_DELAY_TICKS * TICK_S + late_s)).exp();
         self.stick * self.answer(omega, late_s) * per_volt * command * delay
