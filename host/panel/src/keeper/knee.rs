@@ -7,8 +7,9 @@ use crate::shared::Outcome;
 use crepitus_board::values::{is_of_knee, knee, with_preset};
 use crepitus_client::{Client, Transport};
 use crepitus_protocol::parameters::PARAMETERS;
-use crepitus_protocol::{Revision, Values};
+use crepitus_protocol::{DeviceSettings, Revision, Values};
 use crepitus_scene::preset::{self, Disorder, Preset};
+use crepitus_scene::scene::caps_warning;
 use serde_json::{Value, json};
 
 /// The knee without a disorder.
@@ -21,6 +22,7 @@ impl<T: Transport> Keeper<'_, T> {
         self.commit(|now| with_preset(now, &preset, add))?;
         self.preset = (!add).then(|| (name.to_owned(), self.committed));
         self.publish_parameters();
+        self.warn_of_caps();
         Ok(Value::Null)
     }
 
@@ -51,7 +53,18 @@ impl<T: Transport> Keeper<'_, T> {
         let revision = self.client.set(changes);
         let revision = revision.map_err(|error| self.explained(error))?;
         self.reload_parameters();
+        self.warn_of_caps();
         Ok(json!({ "revision": revision.0 }))
+    }
+
+    /// Tells pages if the effects can ask for more together than the device shows.
+    fn warn_of_caps(&mut self) {
+        let Ok(settings) = DeviceSettings::of(&self.values) else {
+            return;
+        };
+        let joint = settings.crepitus.as_ref().map(|joint| &joint.parameters);
+        let warning = caps_warning(&settings.effects, joint, settings.limits.torque_nm);
+        self.message = warning.or(self.message.take());
     }
 
     pub(super) fn reset(&mut self) -> Outcome {

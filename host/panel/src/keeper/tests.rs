@@ -132,3 +132,17 @@ fn pages_have_their_turn_while_samples_come_faster_than_they_are_taken() {
     }
     assert!(keeper.now_s > 0.05, "{} s of samples", keeper.now_s);
 }
+
+#[test]
+fn a_knee_that_asks_for_more_than_the_device_shows_is_told() {
+    let program = Alone::default();
+    let mut keeper = keeper(&program);
+    keeper.apply("healthy", false).expect("a knee");
+    assert_eq!(keeper.message, None);
+    keeper.apply("texture-bone-on-bone", false).expect("a knee");
+    let message = keeper.message.clone().expect("a warning");
+    assert!(
+        message.contains("the symptoms can ask for 5.1 N·m together"),
+        "{message}"
+    );
+}
