@@ -17,7 +17,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
-use support::served::{Served, ending_signals, signal, until};
+use support::served::{Served, ended, ending_signals, signal, until};
 use support::{HALF_A_SECOND, recording, stderr, stdout};
 
 /// Starts a program whose outputs are kept.
@@ -308,13 +308,13 @@ fn many_programs_are_killed_at_random() {
         signal(&running[victim], rng.choice(&signals).unwrap());
         kills += 1;
         let mut child = running.swap_remove(victim);
-        ended_in_order += usize::from(child.wait().unwrap().code().is_some());
+        ended_in_order += usize::from(ended(&mut child).code().is_some());
     }
     for child in &running {
         signal(child, "-INT");
     }
     for mut child in running {
-        child.wait().unwrap();
+        ended(&mut child);
     }
     sleep(Duration::from_millis(400));
     let (observed, _home) = bench.stop();

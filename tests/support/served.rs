@@ -4,7 +4,7 @@ use super::{crepitus, stderr, stdout};
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -87,6 +87,24 @@ pub(crate) fn signal(child: &Child, name: &str) {
         .status()
         .unwrap();
     assert!(sent.success());
+}
+
+/// Waits for the end of a program that was signalled; one that goes on is a failure, not a test
+/// without an end.
+pub(crate) fn ended(child: &mut Child) -> ExitStatus {
+    const PATIENCE: Duration = Duration::from_mins(1);
+    let begun = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            return status;
+        }
+        assert!(
+            begun.elapsed() < PATIENCE,
+            "process {} obeys no signal",
+            child.id()
+        );
+        sleep(Duration::from_millis(1));
+    }
 }
 
 /// Signals that end a program in order. Without SIGHUP where these tests, and so

@@ -77,6 +77,9 @@ pub(crate) fn follow(
 ) -> Result<End, Failure> {
     let Arming { arm, zero } = arming;
     interrupt::listen();
+    if interrupt::requested() {
+        return Ok(End::Requested);
+    }
     if zero {
         client.zero().map_err(failure)?;
     }

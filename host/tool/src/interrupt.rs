@@ -8,19 +8,44 @@ use std::sync::{Arc, OnceLock};
 static REQUESTED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
 /// Installs the handlers, which set a flag.
+///
+/// A signal that comes while its handler is being installed would reach neither the handler nor
+/// the system, so it waits for that long. That is so for the thread that calls this: programs
+/// that arm or record call it before they have another one.
 pub(crate) fn listen() {
     REQUESTED.get_or_init(|| {
         let requested = Arc::new(AtomicBool::new(false));
-        for signal in signals() {
-            // Without a handler the signal kills the program; only the order of
-            // its end is lost.
-            let _ = signal_hook::flag::register(signal, requested.clone());
-        }
+        held_back(|| {
+            for signal in signals() {
+                // Without a handler the signal kills the program; only the order of
+                // its end is lost.
+                let _ = signal_hook::flag::register(signal, requested.clone());
+            }
+        });
         // With a handler, a file that would be larger than it may be is an error of the write.
         #[cfg(unix)]
         let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
         requested
     });
+}
+
+/// Does something while the signals wait.
+#[cfg(unix)]
+fn held_back(work: impl FnOnce()) {
+    use nix::sys::signal::{SigSet, SigmaskHow, Signal};
+    let signals = signals().into_iter().flat_map(Signal::try_from);
+    let before = signals
+        .collect::<SigSet>()
+        .thread_swap_mask(SigmaskHow::SIG_BLOCK);
+    work();
+    if let Ok(before) = before {
+        let _ = before.thread_set_mask();
+    }
+}
+
+#[cfg(not(unix))]
+fn held_back(work: impl FnOnce()) {
+    work();
 }
 
 /// Forgets a request that was obeyed; the next one counts.

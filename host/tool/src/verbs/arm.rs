@@ -4,6 +4,7 @@ use crate::cli::{DeviceArguments, duration};
 use crate::device_command::print_done;
 use crate::failure::Failure;
 use crate::following::{Arming, End, Follower, follow};
+use crate::interrupt;
 use crate::keys::Keys;
 use crate::line::{Line, connect};
 use clap::Args;
@@ -63,6 +64,7 @@ impl Follower for UntilKey {
 }
 
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    interrupt::listen();
     let mut client = connect(&arguments.device)?;
     let mut until_key = UntilKey { keys: None };
     let end = follow(

@@ -7,6 +7,7 @@ mod view;
 use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Arming, Follower, follow};
+use crate::interrupt;
 use crate::line::{Line, failure, failure_with, holder, named, open_in_real_time};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -60,6 +61,7 @@ pub(crate) struct Arguments {
 
 /// Shows it until a key ends it.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    interrupt::listen();
     if !stdin().is_terminal() || !stdout().is_terminal() {
         return Err(Failure::input(
             "monitor needs a terminal for its screen and its keys: `crepitus stream` prints samples instead",

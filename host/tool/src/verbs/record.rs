@@ -3,6 +3,7 @@
 use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Arming, follow};
+use crate::interrupt;
 use crate::line::connect;
 use crate::recorded::{Recorded, print_ended};
 use clap::Args;
@@ -45,6 +46,7 @@ pub(crate) struct Arguments {
 
 /// Records.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    interrupt::listen();
     let file = &arguments.file;
     let mut client = connect(&arguments.device)?;
     let mut recorded = Recorded::begin(&mut client, file, &arguments.title)?;

@@ -3,6 +3,7 @@
 use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print};
 use crate::following::{Arming, Follower, follow};
+use crate::interrupt;
 use crate::line::{Line, connect, failure};
 use crate::status_line::StatusLine;
 use clap::{Args, ValueEnum};
@@ -53,6 +54,7 @@ pub(crate) struct Arguments {
 
 /// Streams.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    interrupt::listen();
     let rate = arguments.rate;
     if !TICKS_PER_S.is_multiple_of(rate) {
         let fits = |rate: &u32| TICKS_PER_S.is_multiple_of(*rate);
