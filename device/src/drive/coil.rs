@@ -49,7 +49,7 @@ pub const LARGEST_COIL_DUTY: f32 = 0.92;
 /// Ticks without a measured current until the fault.
 const MISSING_TICKS: u8 = 3;
 
-/// How much more than believed a coil may take where it is driven most.
+/// Tolerance of the current at the largest voltage: it may be this many times that of R.
 const LEAST_MARGIN: f64 = 1.1;
 
 /// Largest voltage over the root of the mean square from which on it is compared, at least: that

@@ -1,5 +1,5 @@
 //! Runs a target over files: `replay TARGET < names`, with a name in each line.
-//! What `fuzz/places.py` builds with counters of coverage.
+//! `fuzz/places.py` builds it with coverage instrumentation.
 
 use crepitus_fuzz_bodies::TARGETS;
 use std::{env, error::Error, fs, io};

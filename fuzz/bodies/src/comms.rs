@@ -223,7 +223,7 @@ impl Bench {
                     self.is_in_frame = false;
                 }
                 16..=63 => self.comms.saved(bytes.byte() < 200),
-                250.. => self.crowd(),
+                250.. => self.evict_sessions(),
                 count => self.read(usize::from(count)),
             },
             _ => {
@@ -239,9 +239,9 @@ impl Bench {
         self.request_with(self.host.nonce(session), session, number, operation);
     }
 
-    /// As many other sessions as comms knows at once: whoever was there is forgotten, but the
-    /// holder of the lease and those that a request is for.
-    fn crowd(&mut self) {
+    /// Opens as many new sessions as comms has room for, so that it evicts the others, except the
+    /// holder of the lease and the one that a request is for.
+    fn evict_sessions(&mut self) {
         for number in 0..MOST_SESSIONS {
             self.request(Session(0x10_0000 + number), 1, Operation::Open);
             self.read(usize::MAX);

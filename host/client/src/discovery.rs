@@ -123,15 +123,19 @@ pub fn simulated_devices(folder: &Path) -> Vec<Device> {
     devices
 }
 
-/// Whether this port is, or leads to, the link of a simulated device that no program serves
+/// True if this port is, or links to, the link of a simulated device that no program serves
 /// any more. What is behind it may be anybody's terminal.
 ///
-/// It is told by its folder, however the path is written, or by the lock beside it: the folder
-/// may be that of another environment.
+/// A link is one of a simulated device if it is in [`simulated_folder`], however the path is
+/// written, or has a lock file beside it: `XDG_RUNTIME_DIR` may have been another when it was made.
 pub fn is_stale(port: &Path) -> bool {
+    is_stale_in(&simulated_folder(), port)
+}
+
+fn is_stale_in(folder: &Path, port: &Path) -> bool {
     /// Links that lead to links; the system follows 40.
     const MOST_LINKS: usize = 40;
-    let folder = fs::canonicalize(simulated_folder()).ok();
+    let folder = fs::canonicalize(folder).ok();
     let mut path = port.to_path_buf();
     for _ in 0..MOST_LINKS {
         let Ok(target) = fs::read_link(&path) else {
@@ -193,6 +197,10 @@ mod tests {
         ];
         // Anybody's link.
         assert!(names.iter().all(|name| !is_stale(&path(name))));
+        // In the folder of simulated devices each link is one of theirs.
+        for name in names {
+            assert!(is_stale_in(&path("inside"), &path(name)), "{name}");
+        }
         let lock = fs::File::create(path("inside/knee.lock")).unwrap();
         for name in names {
             assert!(is_stale(&path(name)), "{name}");

@@ -206,6 +206,25 @@ fn swings(stronger: f64, gear: &str, late_ticks: usize) -> (f64, f64) {
     (first, last)
 }
 
+/// A device that believes in half the force commands twice the voltage.
+#[test]
+fn margins_are_of_what_the_device_believes() {
+    use crepitus_study::vibration::loop_gain::margins;
+    let right = margins(&scene(0.5, &[]));
+    let key = "effects.vibration-actuator.force_constant_n_per_a";
+    let wrong = margins(&scene(0.5, &[(key, "0.55")]));
+    for (right, wrong) in right.iter().zip(&wrong) {
+        assert!(
+            (wrong.largest / right.largest - 2.0).abs() < 1e-9,
+            "{wrong:?}"
+        );
+        assert!(
+            (wrong.stable_to / right.stable_to - 0.5).abs() < 1e-9,
+            "{wrong:?}"
+        );
+    }
+}
+
 #[test]
 fn the_loop_oscillates_where_its_margin_ends() {
     use crepitus_study::vibration::loop_gain::margins;

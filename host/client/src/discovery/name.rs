@@ -62,7 +62,7 @@ pub(super) fn is_served(link: &Path) -> bool {
     is_locked && link.exists()
 }
 
-/// Whether a program has served a simulated device at this link.
+/// True if there is a lock file: a program serves, or has served, a simulated device at this link.
 pub(super) fn has_lock(link: &Path) -> bool {
     lock_of(link).exists()
 }

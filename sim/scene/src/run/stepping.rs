@@ -276,7 +276,8 @@ impl StepAccounting {
         self.tally.shown(held_nm);
     }
 
-    /// Accounts for a step whose sample a device took, when it has begun anew so often.
+    /// Accounts for a step whose sample a device took; `restarts` counts the gaps so far after
+    /// which its joint began anew.
     #[inline]
     pub(super) fn end_tick<F: Real, J: StickSlip<F>>(
         &mut self,
