@@ -6,7 +6,8 @@
 //!
 //! A *group* holds two seconds of rows, column by column. Its *seal*
 //! ([`seal`]) has the group's checksum and a footer for this group alone, so
-//! that the rest can be read if any part of the file is lost. Other readers
+//! that the rest can be read if any part of the file is lost, and the
+//! recording's id, so that a group of another one is known. Other readers
 //! follow the offsets in the footer and skip the seals.
 //!
 //! The footer's key-value metadata has the recording's own (`crepitus`: JSON)
@@ -34,6 +35,9 @@ const GROUP_ROWS: usize = 40_000;
 /// Keys of the footer's metadata.
 const KEY: &str = "crepitus";
 const SUM_KEY: &str = "crepitus_sha256";
+
+/// Key of a seal's footer that has a group: the recording's id.
+const ID_KEY: &str = "crepitus_id";
 
 /// Stands for the file's own checksum while that is computed.
 const NO_SUM: [u8; 64] = [b'0'; 64];

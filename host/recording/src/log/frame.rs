@@ -107,6 +107,33 @@ impl Content {
     }
 }
 
+/// The recording whose file is read. Behind the header of another one, nothing
+/// is its own up to its next checkpoint.
+#[derive(Debug, Default)]
+pub(crate) struct Owner {
+    id: Option<String>,
+    is_elsewhere: bool,
+}
+
+impl Owner {
+    /// True if the next content is this recording's, as far as that can be told.
+    pub(crate) fn owns(&mut self, content: &Content) -> bool {
+        if let Content::Entry(entry) = content {
+            match &**entry {
+                Entry::Header(metadata) => {
+                    let id = self.id.get_or_insert_with(|| metadata.id.clone());
+                    self.is_elsewhere = *id != metadata.id;
+                }
+                Entry::Checkpoint(checkpoint) if self.id.as_ref() == Some(&checkpoint.id) => {
+                    self.is_elsewhere = false;
+                }
+                _ => {}
+            }
+        }
+        !self.is_elsewhere
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

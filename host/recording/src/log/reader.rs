@@ -1,6 +1,6 @@
 //! Reading of the file of a recording in progress, in order to any damage.
 
-use super::frame::{Checkpoint, Content, Entry};
+use super::frame::{Checkpoint, Content, Entry, Owner};
 use super::{FRAME_LIMIT, MAGIC, repair};
 use crate::books::Ledger;
 use crate::findings::Findings;
@@ -20,6 +20,7 @@ pub(crate) struct LogReader<R> {
     chunk: Vec<u8>,
     /// Of the bytes since the last checkpoint.
     sum: Sha256,
+    owner: Owner,
     metadata: Option<Metadata>,
     ledger: Ledger,
     history: History,
@@ -103,6 +104,7 @@ impl<R: BufRead> LogReader<R> {
             offset: chunk.len() as u64,
             sum: Sha256::new_with_prefix(&chunk),
             chunk,
+            owner: Owner::default(),
             metadata: None,
             ledger: Ledger::default(),
             history: History::default(),
@@ -179,19 +181,24 @@ impl<R: BufRead> LogReader<R> {
                 .add(format!("There is more after its end, from byte {from} on"));
             return None;
         }
+        let is_own = self.owner.owns(&content);
         let entry = match content {
+            Content::Block(_) if !is_own => return None,
             Content::Block(block) => return self.block(block),
             Content::Entry(entry) => *entry,
         };
         match entry {
-            Entry::Header(metadata) => {
-                if self.metadata.is_some() {
-                    self.findings
-                        .add(format!("Another recording begins in it, at byte {from}"));
+            Entry::Header(_) if self.metadata.is_some() => {
+                let what = if is_own {
+                    "Its header is there twice"
                 } else {
-                    self.metadata = Some(*metadata);
-                }
+                    "Another recording begins in it, and its samples are left out"
+                };
+                self.findings.add(format!("{what}, at byte {from}"));
+                self.is_noted = true;
             }
+            Entry::Header(metadata) => self.metadata = Some(*metadata),
+            _ if !is_own => {}
             Entry::Subscribed(begin) => self.ledger.subscribed(begin),
             Entry::Parameters {
                 number,

@@ -2,7 +2,7 @@
 //! reading on.
 
 use super::MAGIC;
-use super::frame::{Content, Entry};
+use super::frame::{Content, Entry, Owner};
 use crepitus_protocol::frame::DELIMITER;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -40,6 +40,7 @@ fn places(mut file: &File) -> io::Result<(Option<Place>, Vec<Place>)> {
     file.seek(SeekFrom::Start(MAGIC.len() as u64))?;
     let mut input = BufReader::new(file);
     let (mut header, mut places, mut waiting) = (None, Vec::new(), Vec::new());
+    let mut owner = Owner::default();
     let mut from = MAGIC.len() as u64;
     let mut chunk = Vec::new();
     loop {
@@ -59,7 +60,8 @@ fn places(mut file: &File) -> io::Result<(Option<Place>, Vec<Place>)> {
         };
         from += bytes;
         let frame = chunk.strip_suffix(&[DELIMITER]).unwrap_or_default();
-        match Content::of(&mut frame.to_vec()) {
+        let content = Content::of(&mut frame.to_vec());
+        match content.filter(|content| owner.owns(content)) {
             Some(Content::Block(block)) => {
                 (place.start, place.tick) = (block.flags.start(), block.first_tick);
                 for mut entry in waiting.drain(..) {

@@ -1,7 +1,7 @@
 //! Reading: only what its checksums say is right is handed to the decoder.
 
 use super::seal::{self, Seal};
-use super::{About, KEY, NO_SUM, columns, other};
+use super::{About, ID_KEY, KEY, NO_SUM, columns, other};
 use crate::books::Recount;
 use crate::findings::Findings;
 use crate::row::Row;
@@ -75,6 +75,14 @@ impl Reader {
         let mut next_row = 0;
         let groups = seals.into_iter().filter(|seal| seal.rows > 0);
         for seal in groups {
+            let footer = seal.footer()?;
+            if value(&footer, ID_KEY).is_some_and(|id| id != about.metadata.id) {
+                let at = seal.first_byte;
+                findings.add(format!(
+                    "Rows of another recording stand in it, at byte {at}, and are left out"
+                ));
+                continue;
+            }
             if seal.first_row < next_row {
                 findings.add(format!("Rows from {} on are there twice", seal.first_row));
                 continue;
@@ -194,9 +202,13 @@ fn decoded(footer: &[u8]) -> io::Result<ParquetMetaData> {
 }
 
 fn about_of(footer: &ParquetMetaData) -> Option<About> {
+    serde_json::from_str(value(footer, KEY)?).ok()
+}
+
+fn value<'f>(footer: &'f ParquetMetaData, key: &str) -> Option<&'f str> {
     let pairs = footer.file_metadata().key_value_metadata()?;
-    let about = pairs.iter().find(|pair| pair.key == KEY)?;
-    serde_json::from_str(about.value.as_deref()?).ok()
+    let pair = pairs.iter().find(|pair| pair.key == key)?;
+    pair.value.as_deref()
 }
 
 /// True if the file is the one that was written, to the last bit.

@@ -1,7 +1,7 @@
 //! Writing.
 
 use super::seal::seal;
-use super::{About, GROUP_ROWS, KEY, NO_SUM, SUM_KEY, columns, other};
+use super::{About, GROUP_ROWS, ID_KEY, KEY, NO_SUM, SUM_KEY, columns, other};
 use crate::recording::{ReadError, Recording};
 use crate::row::Row;
 use parquet::file::metadata::{FileMetaData, KeyValue};
@@ -50,7 +50,8 @@ pub(crate) fn write(
         parameters: recording.parameters().clone(),
         books: recording.books().clone(),
     };
-    let mut writer = Writer::new(file, serde_json::to_string(&about)?)?;
+    let id = about.metadata.id.clone();
+    let mut writer = Writer::new(file, id, serde_json::to_string(&about)?)?;
     let mut rows = Vec::with_capacity(GROUP_ROWS);
     for row in recording.rows().map_err(io_error)? {
         rows.push(row.map_err(io_error)?);
@@ -77,11 +78,12 @@ fn io_error(error: ReadError) -> io::Error {
 struct Writer<'f> {
     file: SerializedFileWriter<Output<'f>>,
     about: KeyValue,
+    id: KeyValue,
     rows: u64,
 }
 
 impl<'f> Writer<'f> {
-    fn new(file: &'f File, about: String) -> io::Result<Self> {
+    fn new(file: &'f File, id: String, about: String) -> io::Result<Self> {
         let output = Output {
             file: BufWriter::new(file),
             sum: Sha256::new(),
@@ -93,11 +95,11 @@ impl<'f> Writer<'f> {
         let mut writer = Self {
             file: SerializedFileWriter::new(output, schema, properties).map_err(other)?,
             about: KeyValue::new(KEY.to_owned(), about),
+            id: KeyValue::new(ID_KEY.to_owned(), id),
             rows: 0,
         };
         writer.begin_group()?;
-        let about = Some(vec![writer.about.clone()]);
-        writer.seal(0, about)?;
+        writer.seal(0, writer.about.clone())?;
         Ok(writer)
     }
 
@@ -113,14 +115,14 @@ impl<'f> Writer<'f> {
         columns::write(rows, &mut group).map_err(other)?;
         group.close().map_err(other)?;
         self.file.flush()?;
-        self.seal(self.rows, None)?;
+        self.seal(self.rows, self.id.clone())?;
         self.rows += rows.len() as u64;
         rows.clear();
         Ok(())
     }
 
     /// Seals what was written since the last seal.
-    fn seal(&mut self, first_row: u64, about: Option<Vec<KeyValue>>) -> io::Result<()> {
+    fn seal(&mut self, first_row: u64, pair: KeyValue) -> io::Result<()> {
         let groups: Vec<_> = self
             .file
             .flushed_row_groups()
@@ -137,7 +139,7 @@ impl<'f> Writer<'f> {
             properties.writer_version().as_num(),
             rows,
             Some(properties.created_by().to_owned()),
-            about,
+            Some(vec![pair]),
             self.file.schema_descr().clone().into(),
             None,
         );

@@ -235,6 +235,18 @@ fn a_part_of_another_recording_is_named() {
     let mixed = [&bench.whole[..header], &other[header..]].concat();
     let said = bench.check(&mixed, bench.all.len());
     assert!(said.contains("of another recording"), "{said}");
+    // One that was cut off, and the other one behind it, with ticks of its own.
+    let cut = bench.frames()[800].end;
+    let path = bench.folder.path().join("later");
+    recorded(&path, "a later one", &sent(2_600)[1_400..]);
+    let later = fs::read(&path).unwrap();
+    let spliced = [&bench.whole[..cut], &later[..]].concat();
+    let said = bench.check(&spliced, 700 * 20);
+    assert!(said.contains("Another recording begins in it"), "{said}");
+    // It stands in the middle: behind the next checkpoint the rest is kept.
+    let spliced = [&bench.whole[..cut], &later[..], &bench.whole[cut..]].concat();
+    let said = bench.check(&spliced, 850 * 20);
+    assert!(said.contains("Another recording begins in it"), "{said}");
 }
 
 #[test]

@@ -204,6 +204,31 @@ fn a_group_that_is_lost_leaves_rows_and_parameters_in_step() {
     );
 }
 
+/// The groups of one where those of another were, seals and all.
+#[test]
+fn a_group_of_another_recording_is_named_and_left_out() {
+    let bench = Bench::new(BLOCKS);
+    let log = bench.folder.path().join("other log");
+    recorded(&log, "another", &sent(2 * BLOCKS)[4..]);
+    let other = bench.folder.path().join("other");
+    converted(&log, &other);
+    let other = fs::read(other).unwrap();
+    let mark = b"\xe7crepitus group\x1c";
+    let seals = |file: &[u8]| -> Vec<usize> {
+        let marks = file.windows(mark.len()).enumerate();
+        marks.filter(|(_, window)| window == mark).map(|(at, _)| at).collect()
+    };
+    let (own, foreign) = (seals(&bench.whole), seals(&other));
+    let spliced = [
+        &bench.whole[..own[1]],
+        &other[foreign[1]..foreign[3]],
+        &bench.whole[own[2]..],
+    ]
+    .concat();
+    let said = bench.check(&spliced, 20_000);
+    assert!(said.contains("Rows of another recording stand in it"), "{said}");
+}
+
 /// Whatever a file is made of: an error, or rows whose books add up.
 #[test]
 fn no_bytes_are_too_strange() {
