@@ -87,7 +87,7 @@ fn numbers() -> String {
         ("currents of the coil in a block", COIL_CURRENTS.to_string()),
         ("parameters", PARAMETER_COUNT.to_string()),
         (
-            "ticks from the last fresh heartbeat to no torque",
+            "ticks from reading the last fresh heartbeat to no torque",
             HEARTBEAT_TICKS.to_string(),
         ),
         (

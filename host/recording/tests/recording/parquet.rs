@@ -216,7 +216,10 @@ fn a_group_of_another_recording_is_named_and_left_out() {
     let mark = b"\xe7crepitus group\x1c";
     let seals = |file: &[u8]| -> Vec<usize> {
         let marks = file.windows(mark.len()).enumerate();
-        marks.filter(|(_, window)| window == mark).map(|(at, _)| at).collect()
+        marks
+            .filter(|(_, window)| window == mark)
+            .map(|(at, _)| at)
+            .collect()
     };
     let (own, foreign) = (seals(&bench.whole), seals(&other));
     let spliced = [
@@ -226,7 +229,10 @@ fn a_group_of_another_recording_is_named_and_left_out() {
     ]
     .concat();
     let said = bench.check(&spliced, 20_000);
-    assert!(said.contains("Rows of another recording stand in it"), "{said}");
+    assert!(
+        said.contains("Rows of another recording stand in it"),
+        "{said}"
+    );
 }
 
 /// Whatever a file is made of: an error, or rows whose books add up.

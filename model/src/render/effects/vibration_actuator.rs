@@ -177,8 +177,8 @@ const FADE_PER_S: f64 = 20.0;
 /// The share of the stroke that is not left to the motion of what carries the mass.
 const STROKE_SHARE: f64 = 0.8;
 
-/// The least share of the stroke that is left to the command.
-const LEAST_STROKE_SHARE: f64 = 0.2;
+/// The most of the stroke that the mass's weight may take: a fifth is left to the command.
+const SAG_SHARE: f64 = 0.6;
 
 /// m/s².
 const STANDARD_GRAVITY: f64 = 9.806_65;
@@ -204,10 +204,13 @@ impl VibrationActuatorSettings {
     /// The excursion that the command may use, m: four fifths of the stroke, without what
     /// the mass sags when the leg is turned.
     pub fn usable_stroke_m(&self) -> f64 {
+        STROKE_SHARE * self.stroke_mm * 1e-3 - self.sag_m()
+    }
+
+    /// How far its weight moves the mass at most, m.
+    fn sag_m(&self) -> f64 {
         let omega = self.resonance_rad_s();
-        let stroke_m = self.stroke_mm * 1e-3;
-        let left_m = STROKE_SHARE * stroke_m - STANDARD_GRAVITY / (omega * omega);
-        left_m.at_least(LEAST_STROKE_SHARE * stroke_m)
+        STANDARD_GRAVITY / (omega * omega)
     }
 
     /// Damping ratio of the back-EMF alone.
@@ -217,7 +220,7 @@ impl VibrationActuatorSettings {
         constant * constant / (2.0 * self.resistance_ohm * mass_kg * self.resonance_rad_s())
     }
 
-    /// Checks the ranges, and what such a coil cannot be.
+    /// Checks the ranges, and what such an actuator cannot be.
     ///
     /// # Errors
     /// The first rule that is broken.
@@ -227,6 +230,12 @@ impl VibrationActuatorSettings {
             return Err(SettingsError::Contradiction {
                 reason: "vibration-actuator: a coil with this force constant and resistance damps such a mass more \
                          than damping_ratio, Bl²/(2·R·m·ω₀)",
+            });
+        }
+        if self.sag_m() > SAG_SHARE * self.stroke_mm * 1e-3 {
+            return Err(SettingsError::Contradiction {
+                reason: "vibration-actuator: on so soft a flexure the weight of the mass takes more than 0.6 of \
+                         stroke_mm, g/ω₀²",
             });
         }
         Ok(())

@@ -40,6 +40,8 @@ const VARIES: [(&str, &[&str]); 4] = [
 pub struct Draws {
     /// How many.
     pub count: usize,
+    /// How many of them could not be run to the end; they are not within.
+    pub failed: usize,
     /// Level over that of the nominal device: the 5 % quantile, the median, the 95 % quantile.
     pub level: [f64; 3],
     /// Share of them with a level within [`WITHIN`] of the nominal one.
@@ -60,7 +62,11 @@ impl fmt::Display for Draws {
             WITHIN.1,
             100.0 * self.within,
             self.least_correlation
-        )
+        )?;
+        match self.failed {
+            0 => Ok(()),
+            failed => write!(f, "; {failed} of them could not be run, and are not within"),
+        }
     }
 }
 
@@ -119,11 +125,12 @@ pub(super) fn judge(drawn: &[Result<Kept, String>], device: Option<&Kept>) -> Op
     }
     let (least, most) = WITHIN;
     let is_within = |level: &&f64| (least..=most).contains(*level);
-    let within = whole(levels.iter().filter(is_within).count()) / whole(levels.len());
+    let within = whole(levels.iter().filter(is_within).count()) / whole(drawn.len());
     levels.sort_by(f64::total_cmp);
     correlations.sort_by(f64::total_cmp);
     Some(Draws {
-        count: levels.len(),
+        count: drawn.len(),
+        failed: drawn.len() - levels.len(),
         within,
         level: [
             quantile(&levels, 5)?,
@@ -141,4 +148,40 @@ fn whole(n: usize) -> f64 {
 fn quantile(sorted: &[f64], percent: usize) -> Option<f64> {
     let place = (sorted.len().saturating_sub(1) * percent + 50) / 100;
     sorted.get(place).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kept(level: f64) -> Kept {
+        let mut random = Random(1);
+        let acceleration: Vec<f64> = (0..40_000).map(|_| level * (random.next() - 0.5)).collect();
+        Kept {
+            step_s: 5e-5,
+            torque: Vec::new(),
+            felt: Vec::new(),
+            of_bare_knee: acceleration.clone(),
+            acceleration,
+            coil: None,
+        }
+    }
+
+    #[test]
+    fn a_draw_that_cannot_be_run_is_not_within() {
+        let drawn = [
+            Ok(kept(1.1)),
+            Ok(kept(0.9)),
+            Err("diverged".to_owned()),
+            Ok(kept(3.0)),
+        ];
+        let draws = judge(&drawn, Some(&kept(1.0))).expect("spectra");
+        assert_eq!((draws.count, draws.failed), (4, 1));
+        assert!((draws.within - 0.5).abs() < 1e-12, "{draws:?}");
+        assert!(
+            draws
+                .to_string()
+                .ends_with("1 of them could not be run, and are not within")
+        );
+    }
 }

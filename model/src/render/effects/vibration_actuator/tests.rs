@@ -31,7 +31,16 @@ fn settings_are_their_table_and_are_held_to_it() {
         resonance_hz: 10.0,
         ..s
     };
-    assert!((soft.usable_stroke_m() - 0.2 * 1.6e-3).abs() < 1e-12);
+    assert!(matches!(
+        soft.check(),
+        Err(SettingsError::Contradiction { .. })
+    ));
+    // Its weight takes 2.48 mm: 0.6 of this stroke.
+    for (stroke_mm, is_one) in [(4.13, false), (4.15, true)] {
+        let soft = VibrationActuatorSettings { stroke_mm, ..soft };
+        assert_eq!(soft.check().is_ok(), is_one, "{stroke_mm}");
+        assert!(!is_one || soft.usable_stroke_m() > 0.199 * stroke_mm * 1e-3);
+    }
     assert!((s.electric_damping_ratio() - 0.02547).abs() < 1e-5);
     let light = VibrationActuatorSettings {
         moving_mass_g: 11.0,
