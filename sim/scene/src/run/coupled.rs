@@ -132,15 +132,19 @@ struct Run {
     first_felt_nm: f64,
 }
 
+/// No shaft turns as far or as fast, rad and rad/s, but one that diverges; well below the
+/// root of the largest number in single precision.
+const FASTEST: f64 = 1e15;
+
 impl Run {
-    /// Whether a state is no number, and which: a shaft that is none, or none in the precision
-    /// of the solver, makes an object none.
+    /// Whether a state is no number, and which: a shaft that is none makes an object none, and
+    /// in single precision one whose square overflows does.
     fn diverged(&self, scene: &Scene, by_s: f64) -> Option<Diverged> {
         let shaft = self.plant.shaft();
         if self.device.is_finite() && shaft.angle_rad.is_finite() {
             return None;
         }
-        let fits = |x: f64| x.abs() < f64::from(f32::MAX);
+        let fits = |x: f64| x.abs() < FASTEST;
         if !(fits(shaft.angle_rad) && fits(shaft.omega_rad_s)) {
             return Some(Diverged::Shaft {
                 by_s,
