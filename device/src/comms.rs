@@ -253,6 +253,7 @@ impl Comms {
                 .remaining_ticks(self.drive.seen_tick(), self.now_ms),
             enable: self.supervision.is_enable_requested(),
             start: self.start,
+            ..crepitus_protocol::link::Heartbeat::default()
         };
         let commit = self
             .parameters
@@ -301,11 +302,12 @@ impl Comms {
                 self.counters.count(CommsCounter::DriveRestarts);
                 self.supervision.drive_restarted();
                 self.drive_clock.restart();
+                self.sample_checks = SampleChecks::default();
                 self.stream = Stream::new(block.first_tick);
             }
             Continuity::Next { lost } => self.counters.add(CommsCounter::LostSamples, lost),
         }
-        self.supervise(block, continuity == Continuity::Next { lost: 0 });
+        self.supervise(block);
         self.counters.add(CommsCounter::ReceivedSamples, samples);
         if !self.sessions.has_subscriber() {
             return;
@@ -321,10 +323,11 @@ impl Comms {
 
 impl Comms {
     /// Checks a block by itself, whatever the drive makes of it.
-    fn supervise(&mut self, block: &Block, is_next: bool) {
+    fn supervise(&mut self, block: &Block) {
         self.parameters.shown(block);
         let bounds = self.parameters.bounds_in_force();
-        let fault = (self.sample_checks.check(block, &bounds, is_next))
+        let line_is_on = self.supervision.line_level();
+        let fault = (self.sample_checks.check(block, &bounds, line_is_on))
             .or_else(|| self.drive_clock.check(self.now_ms, block.end_tick()));
         if let Some(fault) = fault
             && self.supervision.observed(fault)

@@ -45,6 +45,7 @@ use commits::Commits;
 use crepitus_protocol::crash::{Head, NO_TICK_WORDS, Part, Ring, TICKS, Tick};
 use crepitus_protocol::frame::{FRAME_BYTES, Frame, FrameBuffer, SoftwareCrc};
 use crepitus_protocol::management::Identity;
+use crepitus_protocol::pieces::Reassembly;
 use crepitus_protocol::{CoilFault, Fault, Revision, State, ValueError, Values};
 use exchange::{Exchange, Rendered};
 use link_task::{LinkTask, Shared};
@@ -185,10 +186,11 @@ impl Drive {
         if self.exchange.is_busy() {
             return;
         }
-        let Some((revision, reassembly)) = self.commits.take() else {
+        let mut gathered = Reassembly::default();
+        let Some(revision) = self.commits.take_into(&mut gathered) else {
             return;
         };
-        let Some(values) = Commits::verified(&reassembly, &self.counters) else {
+        let Some(values) = Commits::verified(&gathered, &self.counters) else {
             return;
         };
         let is_live = self.command.safety().is_live();

@@ -70,6 +70,10 @@ pub struct Heartbeat {
     pub enable: bool,
     /// Boot counter of comms.
     pub start: u16,
+    /// One more than that of the heartbeat before; wraps. One that is not among the 127 after
+    /// the last fresh one is ignored until the timeout, so that the same bytes again are no
+    /// sign of life.
+    pub number: u8,
 }
 
 /// Orders to the drive.

@@ -254,8 +254,10 @@ impl Comms {
         if !self.drive.is_present(self.now_ms) {
             return Err(Refusal::DriveSilent);
         }
-        // A reboot is pending, or the drive has not finished disarming.
-        if self.reboot_ms.is_some() || matches!(self.drive.state(), State::Arming | State::Armed) {
+        // A reboot is pending, or the drive has not finished disarming, or has not said yet
+        // which messages it understands.
+        let is_at_rest = !matches!(self.drive.state(), State::Arming | State::Armed);
+        if self.reboot_ms.is_some() || !is_at_rest || self.drive.identity().is_none() {
             return Err(Refusal::Busy);
         }
         if self.drive.revision(self.now_ms) != Some(self.parameters.revision()) {

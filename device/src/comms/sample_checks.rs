@@ -87,6 +87,13 @@ impl Bounds {
     }
 }
 
+/// Consecutive samples with torque of a drive that says it is not armed: a block may be
+/// the last one of it, with as many samples less one.
+const ASTRAY_SAMPLES: u32 = 24;
+
+/// Blocks between two counts of which the speed follows.
+const MOST_GAP: u64 = 10;
+
 /// The checks and their debounce counters.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SampleChecks {
@@ -94,17 +101,19 @@ pub struct SampleChecks {
     beyond: u32,
     beside: u32,
     outside: u32,
+    astray: u32,
     fast_blocks: u32,
-    /// The last count of the block before.
-    last: Option<i32>,
+    /// End of the last block whose counts are sound, and its last count.
+    last: Option<(u64, i32)>,
 }
 
 impl SampleChecks {
-    /// Checks a block that continues the one before, or follows a gap.
-    pub fn check(&mut self, block: &Block, bounds: &Bounds, is_next: bool) -> Option<Fault> {
-        let last = self.last.filter(|_| is_next);
-        self.last = block.samples.last().map(|sample| sample.count);
-        if !matches!(block.flags.state(), State::Arming | State::Armed) {
+    /// Checks a block that is newer than the one before. While the enable line of comms is
+    /// off no torque is possible, and nothing is checked of a drive that says so.
+    pub fn check(&mut self, block: &Block, bounds: &Bounds, line_is_on: bool) -> Option<Fault> {
+        let speed = self.counts(block);
+        let is_live = matches!(block.flags.state(), State::Arming | State::Armed);
+        if !is_live && !line_is_on {
             *self = Self {
                 last: self.last,
                 ..Self::default()
@@ -114,9 +123,11 @@ impl SampleChecks {
         let range = (block.flags.is_zeroed()).then_some(bounds.range);
         let fault = (block.samples.iter()).find_map(|sample| {
             let fault = self.sample(sample, bounds);
-            fault.or_else(|| self.place(sample, range))
+            let fault = fault.or_else(|| self.place(sample, range));
+            fault.or_else(|| self.state(sample, is_live))
         });
-        fault.or_else(|| self.speed(last, block, bounds))
+        // A leg that coasts may be fast.
+        fault.or_else(|| self.speed(speed.filter(|_| is_live), bounds))
     }
 
     fn sample(&mut self, sample: &Sample, bounds: &Bounds) -> Option<Fault> {
@@ -139,10 +150,12 @@ impl SampleChecks {
             sample.flags.limit(),
             LimitReason::Voltage | LimitReason::Current
         );
-        let is_beside = current_a.is_some_and(|a| {
+        // A drive without a current lets the bridge float: one that does not is beside it, too.
+        let is_that_of_torque = current_a.is_some_and(|a| {
             let off_a = a + sample.torque_nm * bounds.amperes_per_nm;
-            is_energised && !within(off_a, CURRENT_SLACK_A)
+            within(off_a, CURRENT_SLACK_A)
         });
+        let is_beside = is_energised && !is_that_of_torque;
         // A limited sample neither counts nor makes up for others.
         if !is_limited && held(&mut self.beside, is_beside) >= BESIDE_SAMPLES {
             return Some(Fault::CurrentBesideTorque);
@@ -157,15 +170,38 @@ impl SampleChecks {
         (held(&mut self.outside, is_outside) >= BEYOND_SAMPLES).then_some(Fault::TorqueOutsideRange)
     }
 
-    fn speed(&mut self, last: Option<i32>, block: &Block, bounds: &Bounds) -> Option<Fault> {
-        let counts = last.zip(self.last).map(|(last, now)| {
-            #[expect(clippy::cast_precision_loss, reason = "some hundreds")]
-            let counts = now.wrapping_sub(last).unsigned_abs() as f32;
-            counts
-        });
-        // A count that was disturbed is the drive's to judge.
+    fn state(&mut self, sample: &Sample, is_live: bool) -> Option<Fault> {
+        let is_astray = !is_live && sample.flags.has(SampleFlags::ENERGISED);
+        (held(&mut self.astray, is_astray) >= ASTRAY_SAMPLES).then_some(Fault::TorqueBeyondBounds)
+    }
+
+    /// Counts for a block since the last sound one. `None` if this one is not sound, which is
+    /// the drive's to judge, or the last one long ago.
+    fn counts(&mut self, block: &Block) -> Option<f32> {
         let is_sound = (block.samples.iter()).all(|sample| !sample.flags.has(SampleFlags::LOST));
-        let is_fast = is_sound && counts.is_some_and(|counts| counts > bounds.counts);
+        if !is_sound {
+            return None;
+        }
+        let end = block.end_tick();
+        let count = block.samples.last().map_or(0, |sample| sample.count);
+        let (last_end, last_count) = self.last.replace((end, count))?;
+        let ticks = end.checked_sub(last_end)?;
+        if !(1..=MOST_GAP * u64::from(BLOCK_TICKS)).contains(&ticks) {
+            return None;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "some hundreds")]
+        let (counts, ticks) = (
+            count.wrapping_sub(last_count).unsigned_abs() as f32,
+            ticks as f32,
+        );
+        #[expect(clippy::cast_precision_loss, reason = "20")]
+        let block_ticks = BLOCK_TICKS as f32;
+        Some(counts * block_ticks / ticks)
+    }
+
+    fn speed(&mut self, counts: Option<f32>, bounds: &Bounds) -> Option<Fault> {
+        // Of a block without them nothing is known.
+        let is_fast = counts? > bounds.counts;
         (held(&mut self.fast_blocks, is_fast) >= FAST_BLOCKS).then_some(Fault::CommsOverspeed)
     }
 }
@@ -195,11 +231,12 @@ mod tests {
         let mut checks = SampleChecks::default();
         (0..50).find_map(|n| {
             let block = Block {
+                first_tick: u64::try_from(n).unwrap() * 20,
                 flags: BlockFlags::new(state, true, 1),
                 samples: core::array::from_fn(|k| sample(n * 20 + i32::try_from(k).unwrap())),
                 ..Block::default()
             };
-            let fault = checks.check(&block, &bounds(), true)?;
+            let fault = checks.check(&block, &bounds(), state == State::Armed)?;
             Some((fault, usize::try_from(n).unwrap() + 1))
         })
     }
@@ -313,6 +350,7 @@ mod tests {
         let mut checks = SampleChecks::default();
         for n in 0..50 {
             let block = Block {
+                first_tick: u64::try_from(n).unwrap() * 240,
                 flags: BlockFlags::new(State::Armed, true, 1),
                 samples: [Sample {
                     count: n * 100_000,
@@ -320,7 +358,96 @@ mod tests {
                 }; 20],
                 ..Block::default()
             };
-            assert_eq!(checks.check(&block, &bounds(), false), None);
+            assert_eq!(checks.check(&block, &bounds(), true), None);
+        }
+    }
+
+    /// What a drive says of itself does not switch the checks off.
+    #[test]
+    fn a_drive_that_says_it_is_not_armed_is_checked_while_the_line_is_on() {
+        let check = |sample: Sample, line_is_on: bool| {
+            let mut checks = SampleChecks::default();
+            (0..10).find_map(|n| {
+                let block = Block {
+                    first_tick: n * 20,
+                    flags: BlockFlags::new(State::Disarmed, true, 1),
+                    samples: [sample; 20],
+                    ..Block::default()
+                };
+                let fault = checks.check(&block, &bounds(), line_is_on)?;
+                Some((fault, n + 1))
+            })
+        };
+        let over = Sample {
+            current_ma: 2_000,
+            ..Sample::default()
+        };
+        for (sample, found) in [
+            (over, (Fault::CommsOvercurrent, 1)),
+            (energised(5.0), (Fault::TorqueBeyondBounds, 1)),
+            (energised(0.3), (Fault::TorqueBeyondBounds, 2)),
+        ] {
+            assert_eq!(check(sample, true), Some(found));
+            assert_eq!(check(sample, false), None);
+        }
+        assert_eq!(check(Sample::default(), true), None);
+        // Its last block is that of an honest one, wherever in it torque ends.
+        for last in 0..20 {
+            let mut checks = SampleChecks::default();
+            for n in 0..6 {
+                let is_last = n == 3;
+                let state = if n < 3 { State::Armed } else { State::Disarmed };
+                let block = Block {
+                    first_tick: n * 20,
+                    flags: BlockFlags::new(state, true, 1),
+                    samples: core::array::from_fn(|k| {
+                        if n < 3 || is_last && k < last {
+                            energised(0.3)
+                        } else {
+                            Sample::default()
+                        }
+                    }),
+                    ..Block::default()
+                };
+                assert_eq!(checks.check(&block, &bounds(), true), None, "{last} {n}");
+            }
+        }
+    }
+
+    #[test]
+    fn torque_without_a_current_is_beside_it() {
+        let without = |n: i32| Sample {
+            current_ma: if n % 4 == 0 { NO_CURRENT } else { 1_200 },
+            ..energised(0.2)
+        };
+        assert_eq!(armed(without), Some((Fault::CurrentBesideTorque, 6)));
+    }
+
+    /// Every second block lost, and every second one with a lost count.
+    #[test]
+    fn a_runaway_is_seen_through_gaps() {
+        for (step, lost_every) in [(2, 0), (1, 2), (3, 0)] {
+            let mut checks = SampleChecks::default();
+            let found = (0..40).step_by(step).position(|n: i32| {
+                let is_lost = lost_every > 0 && n % lost_every == 1;
+                let block = Block {
+                    first_tick: u64::try_from(n).unwrap() * 20,
+                    flags: BlockFlags::new(State::Armed, true, 1),
+                    samples: core::array::from_fn(|k| Sample {
+                        count: (n * 20 + k as i32) * 12,
+                        flags: energised(0.0)
+                            .flags
+                            .with(SampleFlags::LOST, is_lost && k == 7),
+                        ..energised(0.0)
+                    }),
+                    ..Block::default()
+                };
+                checks.check(&block, &bounds(), true) == Some(Fault::CommsOverspeed)
+            });
+            assert!(
+                found.is_some_and(|n| n <= 7),
+                "{step} {lost_every} {found:?}"
+            );
         }
     }
 }

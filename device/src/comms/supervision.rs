@@ -50,6 +50,11 @@ impl Supervision {
         self.fault
     }
 
+    /// The level of the enable line: true for on.
+    pub fn line_level(&self) -> bool {
+        self.line.level()
+    }
+
     /// Whether the enable line has passed its test.
     pub fn line_is_tested(&self) -> bool {
         self.line.is_tested()
@@ -100,12 +105,12 @@ impl Supervision {
     pub fn clear(&mut self, line_is_on: bool) -> Option<Fault> {
         let persists = match self.fault {
             Some(Fault::CommsImageBroken | Fault::CommsOptionBytes) => true,
-            Some(Fault::VersionMismatch) => self.schema_mismatch,
             Some(Fault::CommsEnableStuckOn) => line_is_on,
             _ => false,
         };
         if !persists {
-            self.fault = None;
+            // It may stand behind the one that was first.
+            self.fault = self.schema_mismatch.then_some(Fault::VersionMismatch);
         }
         self.fault
     }
@@ -207,6 +212,10 @@ mod tests {
         assert_eq!(other_schema.clear(false), Some(Fault::VersionMismatch));
         other_schema.check_schema(schema::HASH);
         assert_eq!(other_schema.clear(false), None);
+        let mut second = Supervision::new(ResetCause::BrownOut, SelfTest::Passed);
+        second.check_schema(!schema::HASH);
+        assert_eq!(second.fault(), Some(Fault::CommsBrownOut));
+        assert_eq!(second.clear(false), Some(Fault::VersionMismatch));
         let mut stuck = supervision();
         stuck.observed(Fault::CommsEnableStuckOn);
         assert_eq!(stuck.clear(true), Some(Fault::CommsEnableStuckOn));

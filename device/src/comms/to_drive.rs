@@ -23,6 +23,8 @@ pub(super) struct ToDriveQueue {
     /// When it may be asked again for this.
     again_ms: u64,
     last_number: u16,
+    /// Of the last heartbeat.
+    heartbeat: u8,
 }
 
 /// Pending messages to the drive, besides heartbeats.
@@ -99,14 +101,18 @@ impl ToDriveQueue {
         self.last_number
     }
 
-    /// Returns the next frame, the most urgent first.
+    /// Returns the next frame, the most urgent first; it numbers heartbeats.
     pub(super) fn next_frame(
         &mut self,
         heartbeat: Heartbeat,
         wanted: &Wanted<'_>,
     ) -> Option<Frame> {
         if core::mem::take(&mut self.heartbeat_due) {
-            return message(&ToDrive::Heartbeat(heartbeat));
+            self.heartbeat = self.heartbeat.wrapping_add(1);
+            return message(&ToDrive::Heartbeat(Heartbeat {
+                number: self.heartbeat,
+                ..heartbeat
+            }));
         }
         if let Some(question) = self.management.take() {
             return frame::encode_bytes(Lane::Management, &question.bytes()).ok();
@@ -206,6 +212,7 @@ mod tests {
             lease_left: 9,
             enable: false,
             start: 1,
+            number: 0,
         };
         (from_ms..from_ms + count)
             .map(|now_ms| {
@@ -244,6 +251,7 @@ mod tests {
             lease_left: 0,
             enable: false,
             start: 1,
+            number: 0,
         };
         let frame = queue.next_frame(heartbeat, &NOTHING);
         assert_eq!(frame.map(|frame| sent(&frame)), Some(Sent::Heartbeat));

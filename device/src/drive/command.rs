@@ -96,8 +96,8 @@ pub struct Command {
     was_driven: bool,
     /// Consecutive ticks with a current while the bridge floats.
     conducting_ticks: u32,
-    /// Consecutive ticks without the enable line of comms.
-    without_comms_ticks: u32,
+    /// For how long the enable line of comms was off.
+    without_comms: u32,
     /// Revision of the active parameters.
     revision: Revision,
     /// The line, as read back.
@@ -137,7 +137,7 @@ impl Command {
             has_chirped: false,
             was_driven: false,
             conducting_ticks: 0,
-            without_comms_ticks: 0,
+            without_comms: 0,
             revision: plan.revision,
             line_is_on: false,
             batch: Batch::new(boot.tick, boot.sequence),
@@ -153,6 +153,9 @@ impl Command {
         if let Some(motor) = &plan.motor {
             self.motor = Motor::new(motor);
         }
+        // Its windows begin with a block's second tick from now on, so that none ends in a
+        // tick in which there is a plan to be applied.
+        self.emf_check = EmfCheck::default();
         // Counts from the zero would be another angle.
         self.zeroed &= plan.rad_per_count == self.rad_per_count;
         self.rad_per_count = plan.rad_per_count;
@@ -209,7 +212,10 @@ impl Command {
         } else {
             Err(DriveRefusal::OutsideRange)
         };
-        self.safety.arm(self.next_tick, self.lost_ticks, place)
+        self.safety.arm(self.next_tick, self.lost_ticks, place)?;
+        self.plausibility = Plausibility::default();
+        self.without_comms = 0;
+        Ok(())
     }
 
     /// The encoder's count from the angle's zero.
@@ -308,7 +314,8 @@ impl Command {
         exchange.announce(Turn {
             tick: low(self.next_tick),
             ends_block: self.batch.ends_block(),
-            is_armed: self.safety.state() == State::Armed,
+            // While the bridge floats the torque's allowance starts anew, too.
+            is_armed: self.safety.state() == State::Armed && self.was_driven,
             zero: self.zero,
         });
         outputs
@@ -391,7 +398,7 @@ impl Command {
             is_late,
             counters,
         );
-        self.doubt_zero(fault_before);
+        self.doubt_zero(fault_before, counters);
         let flags = BlockFlags::new(self.safety.state(), self.zeroed, self.start);
         let phases = rendered.phases.into();
         self.batch
@@ -430,6 +437,7 @@ impl Command {
             Some(torque_nm) => {
                 if !self.was_driven {
                     self.motor.start(omega_rad_s);
+                    self.emf_check = EmfCheck::default();
                 }
                 self.motor.drive(torque_nm, current_a)
             }

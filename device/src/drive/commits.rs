@@ -52,10 +52,12 @@ impl Commits {
         false
     }
 
-    /// Takes the pending commit once complete; see [`Self::verified`].
-    pub fn take(&mut self) -> Option<(Revision, Reassembly)> {
+    /// Takes the pending commit once complete, and copies it to `gathered`; see
+    /// [`Self::verified`]. In one copy: the link waits meanwhile.
+    pub fn take_into(&mut self, gathered: &mut Reassembly) -> Option<Revision> {
         let complete = self.pending.take_if(|_| self.reassembly.is_complete())?;
-        Some((complete, self.reassembly))
+        *gathered = self.reassembly;
+        Some(complete)
     }
 
     /// Returns the values of a commit if its checksum is valid; comms repeats an
@@ -144,8 +146,9 @@ mod tests {
         }
 
         fn take(&mut self) -> Option<(Revision, Values)> {
-            let (revision, reassembly) = self.commits.take()?;
-            Some((revision, Commits::verified(&reassembly, &self.counters)?))
+            let mut gathered = Reassembly::default();
+            let revision = self.commits.take_into(&mut gathered)?;
+            Some((revision, Commits::verified(&gathered, &self.counters)?))
         }
     }
 

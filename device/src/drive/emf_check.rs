@@ -8,7 +8,9 @@
 //! sensors is wrong, also both of the current in the same way. Counts over a
 //! window show the motion without the lag of an estimate, so this is quick: what
 //! is beyond the slack in two windows in a row, the same way, is a contradiction.
-//! A single disturbed sample at their border pulls them apart.
+//! A single disturbed sample at their border pulls them apart. A tick of which something is
+//! not known begins another window; what the one before it said stays. Where more than one in
+//! six are like that, [`plausibility`](crate::drive::plausibility) ends torque.
 
 use crate::drive::prepare::MotorPlan;
 use crepitus_protocol::TICK_S;
@@ -50,7 +52,7 @@ pub struct EmfCheck {
 
 impl EmfCheck {
     /// Adds a tick; true if two windows contradict. `None`, if a value of the tick
-    /// is not known, restarts.
+    /// is not known, begins another window.
     pub fn contradicts(
         &mut self,
         tick: Option<Tick>,
@@ -58,7 +60,7 @@ impl EmfCheck {
         rad_per_count: f32,
     ) -> bool {
         let Some(tick) = tick else {
-            (self.ticks, self.was_beyond) = (None, 0);
+            self.ticks = None;
             return false;
         };
         let Some(ticks) = self.ticks else {
@@ -175,6 +177,36 @@ mod tests {
         assert_eq!(ticks_until(-0.6, 1.0, stands), Some(8));
         assert_eq!(ticks_until(0.5, 0.2, swapped), Some(8));
         assert_eq!(ticks_until(0.0, 1.4, dead), Some(8));
+    }
+
+    /// Values that are missing now and then hide nothing.
+    #[test]
+    fn a_wrong_sensor_contradicts_though_values_are_missing_now_and_then() {
+        let motor = motor();
+        let fits = |n: u16| Tick {
+            volts: motor.joint_constant,
+            current_a: 0.0,
+            count: (f32::from(n) * 5e-5 / RAD_PER_COUNT).floor() as i32,
+        };
+        for period in 2..=12 {
+            let known = |n: u16, tick: Tick| (n % period > 0).then_some(tick);
+            let mut check = EmfCheck::default();
+            let found = (0..200).find(|n| {
+                let stands = Tick {
+                    count: 0,
+                    ..fits(*n)
+                };
+                check.contradicts(known(*n, stands), &motor, RAD_PER_COUNT)
+            });
+            // A window needs five ticks in a row.
+            assert_eq!(found.is_none(), period < 6, "one in {period}: {found:?}");
+            assert!(found.is_none_or(|n| n <= 17), "one in {period}: {found:?}");
+            let mut check = EmfCheck::default();
+            for n in 0..400 {
+                let tick = known(n, fits(n));
+                assert!(!check.contradicts(tick, &motor, RAD_PER_COUNT), "{period}");
+            }
+        }
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! Timeout supervision of heartbeats and of the host's lease.
 //!
 //! Both deadlines are ticks of the drive's own clock, which comms echoes: a
-//! heartbeat that is delayed, repeated or replayed extends the lease by nothing, and
-//! postpones the timeout only while its echo is fresh, [`STALE_TICKS`].
+//! heartbeat that is delayed, repeated or replayed extends the lease by nothing. One that
+//! is repeated does not postpone the timeout, as its number is not a new one; one that is
+//! delayed does while its echo is fresh, [`STALE_TICKS`]. After the timeout any other number
+//! is a new one.
 
 use crepitus_protocol::link::{Heartbeat, STALE_TICKS};
 use crepitus_protocol::{Fault, HEARTBEAT_TICKS};
@@ -27,7 +29,12 @@ pub struct HeartbeatMonitor {
     lease_end: u64,
     /// Boot counter of comms.
     comms_start: Option<u16>,
+    /// Number of the last fresh heartbeat.
+    number: u8,
 }
+
+/// Heartbeats that may be lost in a row: those of more than the timeout.
+const MOST_AHEAD: u8 = 127;
 
 /// Whether a message that echoes `seen_tick` is fresh at `now`.
 pub fn is_fresh(now: u64, seen_tick: u64) -> bool {
@@ -45,6 +52,15 @@ impl HeartbeatMonitor {
         let restarted = self
             .comms_start
             .is_some_and(|start| start != heartbeat.start);
+        let ahead = heartbeat.number.wrapping_sub(self.number);
+        let is_new = restarted
+            || (1..=MOST_AHEAD).contains(&ahead)
+            || self.comms_start.is_none()
+            || ahead != 0 && self.is_silent(now);
+        if !is_new {
+            return Freshness::Stale;
+        }
+        self.number = heartbeat.number;
         self.comms_start = Some(heartbeat.start);
         self.last_tick = Some(now);
         self.lease_end = heartbeat
@@ -67,13 +83,15 @@ impl HeartbeatMonitor {
         self.last_tick.is_some() && now < self.lease_end
     }
 
+    fn is_silent(&self, now: u64) -> bool {
+        self.last_tick
+            // The output of this tick acts during the next: one tick less.
+            .is_none_or(|last_tick| now.saturating_sub(last_tick) >= HEARTBEAT_TICKS - 1)
+    }
+
     /// The fault of an expired timeout in the tick `now`.
     pub fn timeout(&self, now: u64) -> Option<Fault> {
-        let silent = self
-            .last_tick
-            // The output of this tick acts during the next: one tick less.
-            .is_none_or(|last_tick| now.saturating_sub(last_tick) >= HEARTBEAT_TICKS - 1);
-        if silent {
+        if self.is_silent(now) {
             Some(Fault::CommsSilent)
         } else if self.is_leased(now) {
             None
@@ -87,12 +105,14 @@ impl HeartbeatMonitor {
 mod tests {
     use super::*;
 
+    /// The number grows with the tick.
     fn heartbeat(seen_tick: u64, lease_left: u16) -> Heartbeat {
         Heartbeat {
             seen_tick,
             lease_left,
             enable: true,
             start: 1,
+            number: (seen_tick % 256) as u8,
         }
     }
 
@@ -113,13 +133,16 @@ mod tests {
     #[test]
     fn a_lease_ends_at_its_tick_whatever_the_latency() {
         let mut monitor = HeartbeatMonitor::default();
-        for (now, late) in [(10_000, 0), (10_000, 300), (10_000, 400)] {
-            monitor.receive(now, &heartbeat(now - late, 500));
+        for (now, late) in [(10_000, 0), (10_310, 300), (10_420, 400)] {
+            assert_eq!(
+                monitor.receive(now, &heartbeat(now - late, 500)),
+                Freshness::Fresh
+            );
             assert!(monitor.is_leased(now - late + 499));
             assert!(!monitor.is_leased(now - late + 500));
         }
-        monitor.receive(20_000, &heartbeat(20_000, 0));
-        assert_eq!(monitor.timeout(20_000), Some(Fault::LeaseExpired));
+        monitor.receive(20_080, &heartbeat(20_080, 0));
+        assert_eq!(monitor.timeout(20_080), Some(Fault::LeaseExpired));
     }
 
     #[test]
@@ -145,6 +168,39 @@ mod tests {
             ..heartbeat(110, 5_000)
         };
         assert_eq!(monitor.receive(110, &other), Freshness::Restarted);
-        assert_eq!(monitor.receive(120, &other), Freshness::Fresh);
+        assert_eq!(monitor.receive(120, &other), Freshness::Stale);
+        let next = Heartbeat {
+            number: other.number.wrapping_add(1),
+            ..other
+        };
+        assert_eq!(monitor.receive(120, &next), Freshness::Fresh);
+    }
+
+    /// Bytes that come again, in any order, are no sign of life.
+    #[test]
+    fn what_was_received_before_postpones_nothing() {
+        let mut monitor = HeartbeatMonitor::default();
+        let sent = [10_000, 10_001, 10_002].map(|tick| heartbeat(tick, 5_000));
+        for (n, heartbeat) in (0..).zip(&sent) {
+            assert_eq!(monitor.receive(10_010 + n, heartbeat), Freshness::Fresh);
+        }
+        let end = 10_012 + HEARTBEAT_TICKS - 1;
+        for now in 10_013..end {
+            for heartbeat in &sent {
+                assert_eq!(monitor.receive(now, heartbeat), Freshness::Stale);
+            }
+            assert_eq!(monitor.timeout(now), None, "{now}");
+        }
+        assert_eq!(monitor.timeout(end), Some(Fault::CommsSilent));
+        assert_eq!(monitor.receive(end, &sent[2]), Freshness::Stale);
+        // As many may be lost as the timeout does not last.
+        let ahead = |ahead| Heartbeat {
+            number: sent[2].number.wrapping_add(ahead),
+            ..heartbeat(10_100, 5_000)
+        };
+        assert_eq!(monitor.receive(10_101, &ahead(127)), Freshness::Fresh);
+        assert_eq!(monitor.receive(10_102, &ahead(255)), Freshness::Stale);
+        // And after it any other is a new one.
+        assert_eq!(monitor.receive(10_300, &ahead(255)), Freshness::Fresh);
     }
 }

@@ -129,7 +129,8 @@ impl Motor {
     /// Whether the limit of the voltage explains that the current is not the
     /// setpoint: on a shaft of this speed, so much voltage does not drive it. A
     /// loop whose sensor is broken ends at the limit, too, but with voltage to
-    /// spare.
+    /// spare. A back-EMF beyond the limit excuses nothing: it drives a current that
+    /// brakes the leg, whatever the setpoint is.
     pub fn is_out_of_voltage(&self, omega_rad_s: f32) -> bool {
         let Bridge::Driven(volts) = self.bridge else {
             return false;
@@ -139,7 +140,7 @@ impl Motor {
         }
         let left_v = (volts - self.plan.joint_constant * omega_rad_s) * 1.0_f32.copysign(volts);
         let needed_a = self.setpoint_a.abs() + CURRENT_SLACK_A;
-        left_v < WARM * self.plan.resistance_ohm * needed_a
+        (0.0..WARM * self.plan.resistance_ohm * needed_a).contains(&left_v)
     }
 
     /// Current setpoint of the last tick, A.
@@ -216,10 +217,11 @@ mod tests {
     fn the_limit_of_the_voltage_excuses_what_it_explains() {
         for torque_nm in [-4.0_f32, 4.0] {
             let motor = at_the_limit(torque_nm);
-            let fast_rad_s = -7.0_f32.copysign(torque_nm);
+            let fast_rad_s = -5.8_f32.copysign(torque_nm);
             assert!(motor.is_out_of_voltage(fast_rad_s));
-            // With the voltage to spare of a motor at rest, or that is pulled.
-            for omega_rad_s in [0.0, 0.5 * fast_rad_s, -fast_rad_s] {
+            // With the voltage to spare of a motor at rest, or that is pulled; or with a
+            // back-EMF beyond it, which brakes.
+            for omega_rad_s in [0.0, 0.5 * fast_rad_s, -fast_rad_s, 1.1 * fast_rad_s] {
                 assert!(!motor.is_out_of_voltage(omega_rad_s), "{omega_rad_s}");
             }
         }

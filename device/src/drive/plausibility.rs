@@ -38,17 +38,38 @@ const SPEED_EXCESS: f32 = 200.0;
 /// Late ticks that are too many, and what share of one a tick in time makes up
 /// for.
 const LATE_TICKS: f32 = 20.0;
-const LATE_SHARE: f32 = 0.25;
+const LATE_SHARE: f32 = 0.2;
 
 /// A condition that is a fault when it has held for so many consecutive ticks.
 #[derive(Clone, Copy, Debug)]
 struct Check {
     fault: Fault,
-    ticks: u16,
+    /// The ticks times [`TICK`].
+    most: u16,
+    /// Made up for by a tick without the condition.
+    forgets: u16,
 }
 
+/// A tick in which a condition holds, in the unit of its counter.
+const TICK: u16 = 5;
+
+/// A condition of which a single tick without it forgets all.
 const fn check(fault: Fault, ticks: u16) -> Check {
-    Check { fault, ticks }
+    Check {
+        fault,
+        most: ticks * TICK,
+        forgets: u16::MAX,
+    }
+}
+
+/// A condition that also ends in a fault where it comes and goes: in more than one tick
+/// of six.
+const fn recurring(fault: Fault, ticks: u16) -> Check {
+    Check {
+        fault,
+        most: ticks * TICK,
+        forgets: 1,
+    }
 }
 
 /// Number of the checks.
@@ -59,18 +80,22 @@ const TABLE: [Check; CHECKS] = [
     check(Fault::Overcurrent, 1),
     check(Fault::NotANumber, 1),
     check(Fault::Overcurrent, 2),
-    check(Fault::CurrentDisagreement, 2),
+    recurring(Fault::CurrentDisagreement, 2),
     check(Fault::SpeedMismatch, 1),
-    check(Fault::CurrentMissing, 3),
-    check(Fault::TickIrregular, 3),
-    check(Fault::EnableStuckOff, 9),
-    check(Fault::EncoderLost, 1),
+    recurring(Fault::CurrentMissing, 3),
+    recurring(Fault::TickIrregular, 3),
+    recurring(Fault::EnableStuckOff, 9),
+    recurring(Fault::EncoderLost, LOST_TICKS as u16),
     check(Fault::Overspeed, 20),
     check(Fault::CurrentMismatch, 100),
     check(Fault::SpeedMismatch, 400),
 ];
 
-/// The conditions that hold in a tick, a bit each, in the order of [`TABLE`].
+/// Its place in the table.
+const MISMATCH: usize = 10;
+
+/// The conditions that hold in a tick, a bit each, in the order of [`TABLE`]; the highest
+/// bit is set if nothing can be said of [`MISMATCH`], whose counter then stays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Conditions(u16);
 
@@ -80,6 +105,8 @@ impl Conditions {
         let bits = holds.into_iter().rev();
         Self(bits.fold(0, |bits, holds| bits << 1 | u16::from(holds)))
     }
+
+    const UNKNOWN: u16 = 1 << 15;
 }
 
 /// Sums an excess from tick to tick; below zero it forgets. What is far off trips
@@ -128,7 +155,7 @@ pub struct Observation {
 /// The checks' debounce counters.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Plausibility {
-    /// Consecutive ticks in which each condition has held.
+    /// For how long each condition has held, in [`TICK`]s.
     held: [u16; CHECKS],
     late: Excess,
     speeds: Excess,
@@ -164,18 +191,26 @@ impl Plausibility {
         speeds_excess: f32,
     ) -> Option<Fault> {
         let mut fault = None;
-        self.remembers = bits != 0;
+        let mismatch = self.held[MISMATCH];
+        let stays = bits & Conditions::UNKNOWN != 0;
+        let mut any = 0;
         for (held, check) in self.held.iter_mut().zip(&TABLE) {
             *held = if bits & 1 == 0 {
-                0
+                held.saturating_sub(check.forgets)
             } else {
-                held.saturating_add(1)
+                held.saturating_add(TICK)
             };
-            if fault.is_none() && *held >= check.ticks {
+            if fault.is_none() && *held >= check.most {
                 fault = Some(check.fault);
             }
+            any |= *held;
             bits >>= 1;
         }
+        if stays {
+            self.held[MISMATCH] = mismatch;
+            any |= mismatch;
+        }
+        self.remembers = any != 0;
         let late = self
             .late
             .trips(if is_late { 1.0 } else { -LATE_SHARE }, LATE_TICKS);
@@ -199,11 +234,10 @@ fn conditions(
     let is_over = |a: Option<f32>| a.is_some_and(|a| a.abs() > TRIP_A);
     let sensors_differ = (current_a.zip(monitor_a))
         .is_some_and(|(sensor, monitor)| (sensor - monitor).abs() > SENSORS_SLACK_A);
-    let deviates = current_a.is_some_and(|a| {
-        (a - motor.setpoint_a()).abs() > CURRENT_SLACK_A && !motor.is_out_of_voltage(encoder)
-    });
+    let deviates = current_a.is_some_and(|a| (a - motor.setpoint_a()).abs() > CURRENT_SLACK_A);
+    let is_excused = deviates && motor.is_out_of_voltage(encoder);
     let is_irregular = observed.interval_us.abs_diff(TICK_US) > INTERVAL_SLACK_US;
-    Conditions::of([
+    let conditions = Conditions::of([
         observed.has_tripped,
         !observed.torque_is_finite,
         is_over(current_a) || is_over(monitor_a),
@@ -212,11 +246,16 @@ fn conditions(
         current_a.is_none() || monitor_a.is_none(),
         is_irregular,
         !observed.enable_is_on,
-        observed.lost_ticks >= LOST_TICKS,
+        observed.lost_ticks > 0,
         encoder.abs() > speed_limit_rad_s,
-        deviates,
+        deviates && !is_excused,
         speeds_excess > 0.0,
-    ])
+    ]);
+    if is_excused || current_a.is_none() {
+        Conditions(conditions.0 | Conditions::UNKNOWN)
+    } else {
+        conditions
+    }
 }
 
 #[cfg(test)]
@@ -224,23 +263,34 @@ mod tests {
     use super::*;
     use crate::drive::prepare::Preparation;
 
+    fn holds(place: usize) -> Conditions {
+        let mut holds = [false; CHECKS];
+        holds[place] = true;
+        Conditions::of(holds)
+    }
+
+    const NONE: Conditions = Conditions(0);
+
     #[test]
     fn a_condition_counts_while_it_holds_and_the_most_urgent_is_reported() {
         for (n, check) in TABLE.iter().enumerate() {
+            let ticks = check.most / TICK;
             let mut plausibility = Plausibility::default();
-            let mut holds = [false; CHECKS];
-            holds[n] = true;
-            let mut run = |holds| plausibility.count(Conditions::of(holds), false, -1.0);
-            for ticks in 1..check.ticks {
-                assert_eq!(run(holds), None, "{n} after {ticks}");
+            let mut run = |conditions| plausibility.count(conditions, false, -1.0);
+            for n_ticks in 1..ticks {
+                assert_eq!(run(holds(n)), None, "{n} after {n_ticks}");
             }
-            if check.ticks > 1 {
-                assert_eq!(run([false; CHECKS]), None);
-                for _ in 1..check.ticks {
-                    assert_eq!(run(holds), None, "{n} starts over");
+            if ticks > 1 {
+                // All is forgotten: at once, or five times as slowly as it came.
+                let forgotten = (TICK * ticks).div_ceil(check.forgets);
+                for _ in 0..forgotten {
+                    assert_eq!(run(NONE), None);
+                }
+                for _ in 1..ticks {
+                    assert_eq!(run(holds(n)), None, "{n} starts over");
                 }
             }
-            assert_eq!(run(holds), Some(check.fault));
+            assert_eq!(run(holds(n)), Some(check.fault));
         }
         let mut plausibility = Plausibility::default();
         let all = Conditions::of([true; CHECKS]);
@@ -248,19 +298,53 @@ mod tests {
             assert_eq!(plausibility.count(all, true, 1.0), Some(Fault::Overcurrent));
         }
         assert!(plausibility.remembers);
-        for _ in 0..2_100 {
-            let none = Conditions::of([false; CHECKS]);
-            plausibility.count(none, false, -1.0);
+        for _ in 0..3_000 {
+            plausibility.count(NONE, false, -1.0);
         }
         assert!(!plausibility.remembers);
     }
 
+    /// What comes and goes does not stay below the debounce for ever.
     #[test]
-    fn every_other_late_tick_is_too_many_and_one_in_five_is_not() {
-        let none = Conditions::of([false; CHECKS]);
-        for (period, faults) in [(1, true), (2, true), (5, false)] {
+    fn what_recurs_in_more_than_one_tick_of_six_is_a_fault() {
+        let recurring = [
+            Fault::CurrentDisagreement,
+            Fault::CurrentMissing,
+            Fault::TickIrregular,
+            Fault::EnableStuckOff,
+            Fault::EncoderLost,
+        ];
+        for (place, check) in TABLE.iter().enumerate() {
+            for period in 2..8 {
+                let mut plausibility = Plausibility::default();
+                let fault = (0..2_000).find_map(|n| {
+                    let conditions = if n % period == 0 { holds(place) } else { NONE };
+                    plausibility.count(conditions, false, -1.0)
+                });
+                let ends = check.most == TICK || recurring.contains(&check.fault) && period < 6;
+                assert_eq!(fault, ends.then_some(check.fault), "one in {period}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_tick_that_says_nothing_of_the_current_neither_counts_nor_makes_up() {
+        let mut plausibility = Plausibility::default();
+        let mut run = |conditions| plausibility.count(conditions, false, -1.0);
+        for _ in 0..99 {
+            assert_eq!(run(holds(MISMATCH)), None);
+            assert_eq!(run(Conditions(Conditions::UNKNOWN)), None);
+        }
+        assert_eq!(run(holds(MISMATCH)), Some(Fault::CurrentMismatch));
+        assert_eq!(run(NONE), None);
+        assert_eq!(run(holds(MISMATCH)), None);
+    }
+
+    #[test]
+    fn one_late_tick_in_five_is_too_many_and_one_in_six_is_not() {
+        for (period, faults) in [(1, true), (2, true), (5, true), (6, false)] {
             let mut plausibility = Plausibility::default();
-            let fault = (0..200).find_map(|n| plausibility.count(none, n % period == 0, -1.0));
+            let fault = (0..2_000).find_map(|n| plausibility.count(NONE, n % period == 0, -1.0));
             let expected = faults.then_some(Fault::RenderingLate);
             assert_eq!(fault, expected, "one in {period}");
         }

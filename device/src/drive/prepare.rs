@@ -13,7 +13,7 @@ use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::effects::{EffectChanges, Timing};
 use crepitus_model::render::position::Sight;
 use crepitus_model::render::ramp::Ramp;
-use crepitus_model::{Settings, SettingsError, StepCoefficients, Validated};
+use crepitus_model::{Real, Settings, SettingsError, StepCoefficients, Validated};
 use crepitus_protocol::measured::SUPPLY_SHARES;
 use crepitus_protocol::{DeviceSettings, Revision, TICK_S, ValueError, Values};
 
@@ -28,6 +28,10 @@ const FLOATS_SHARE: f64 = 0.7;
 /// Largest duty: the lower switches of both halves are closed for 2 µs on either side of
 /// the middle, where the currents are converted.
 pub const LARGEST_DUTY: f32 = 0.84;
+
+/// Share of the speed at which the back-EMF is the largest voltage of the bridge, up to which
+/// there is torque. Beyond that speed a current flows that nothing holds, and brakes the leg.
+const HELD_SHARE: f64 = 0.95;
 
 /// Delay of the torque: half a tick to a tick and a half, and a lag; of no
 /// particular encoder.
@@ -312,7 +316,7 @@ impl Preparation {
                     None
                 },
                 rad_per_count: reader.rad_per_count,
-                speed_limit_rad_s: single(next.limits.speed_rad_s),
+                speed_limit_rad_s: single(speed_limit_rad_s(&next)),
                 range: range(&next),
                 slow: slow(&next),
                 overload: OverloadPlan::new(next.motor.continuous_a, TICK_S),
@@ -335,6 +339,14 @@ fn silent(settings: &Validated<Settings>) -> Result<StepCoefficients<f32>, Setti
     silent.parameters.kinetic_torque_nm = 0.0;
     silent.parameters.static_torque_nm = 0.0;
     StepCoefficients::new(&silent.validate()?, TICK_S)
+}
+
+/// The speed beyond which torque ends, rad/s: the one that is set, or that up to which the
+/// bridge holds a current of zero.
+fn speed_limit_rad_s(settings: &DeviceSettings) -> f64 {
+    let largest_v = f64::from(LARGEST_DUTY) * settings.current_loop.supply_v;
+    let held_rad_s = HELD_SHARE * largest_v / settings.joint_constant();
+    settings.limits.speed_rad_s.at_most(held_rad_s)
 }
 
 fn range(settings: &DeviceSettings) -> RangePlan {

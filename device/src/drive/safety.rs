@@ -46,6 +46,8 @@ pub enum Permit {
 pub struct Safety {
     state: State,
     fault: Option<Fault>,
+    /// What the self-test found, which stays until the next start.
+    defect: Option<Fault>,
     heartbeat_monitor: HeartbeatMonitor,
     arming: Arming,
     /// Result of the last order to arm.
@@ -59,14 +61,17 @@ impl Safety {
     /// The state after boot: an unexpected reset is a fault, and so is a self-test that
     /// has failed.
     pub fn new(reset: ResetCause, self_test: SelfTest) -> Self {
-        let fault = match (self_test, reset) {
-            (SelfTest::ImageBroken, _) => Some(Fault::DriveImageBroken),
-            (SelfTest::OptionBytesWrong, _) => Some(Fault::DriveOptionBytes),
-            (_, ResetCause::Power | ResetCause::Requested) => None,
-            (_, ResetCause::Watchdog) => Some(Fault::DriveWatchdog),
-            (_, ResetCause::BrownOut) => Some(Fault::DriveBrownOut),
-            (_, ResetCause::Panic) => Some(Fault::DrivePanic),
+        let defect = match self_test {
+            SelfTest::ImageBroken => Some(Fault::DriveImageBroken),
+            SelfTest::OptionBytesWrong => Some(Fault::DriveOptionBytes),
+            SelfTest::Passed => None,
         };
+        let fault = defect.or(match reset {
+            ResetCause::Power | ResetCause::Requested => None,
+            ResetCause::Watchdog => Some(Fault::DriveWatchdog),
+            ResetCause::BrownOut => Some(Fault::DriveBrownOut),
+            ResetCause::Panic => Some(Fault::DrivePanic),
+        });
         Self {
             state: if fault.is_some() {
                 State::Faulted
@@ -74,6 +79,7 @@ impl Safety {
                 State::Disarmed
             },
             fault,
+            defect,
             heartbeat_monitor: HeartbeatMonitor::default(),
             arming: Arming::default(),
             outcome: None,
@@ -197,11 +203,13 @@ impl Safety {
             Some(fault @ Fault::EnableStuckOn) if line_is_on => {
                 Err(DriveRefusal::Faulted { code: fault.code() })
             }
-            Some(fault @ (Fault::DriveImageBroken | Fault::DriveOptionBytes)) => {
-                Err(DriveRefusal::Faulted { code: fault.code() })
-            }
             _ => {
-                self.fault = None;
+                self.fault = self.defect;
+                if let Some(defect) = self.defect {
+                    return Err(DriveRefusal::Faulted {
+                        code: defect.code(),
+                    });
+                }
                 self.state = State::Disarmed;
                 Ok(())
             }

@@ -55,6 +55,7 @@ mod app {
     use crepitus_protocol::Fault;
     use crepitus_protocol::crash::Tick;
     use crepitus_protocol::frame::{DELIMITER, FrameBuffer};
+    use crepitus_protocol::pieces::Reassembly;
     use stm32f4xx_hal::pac::Interrupt;
 
     /// Starts `link`, as the end of a sent frame does.
@@ -295,9 +296,13 @@ mod app {
     )]
     fn idle(mut cx: idle::Context) -> ! {
         let mut reported = None;
+        let mut gathered = Reassembly::default();
         loop {
             if !cx.shared.exchange.is_busy()
-                && let Some((revision, gathered)) = cx.shared.commits.lock(Commits::take)
+                && let Some(revision) = cx
+                    .shared
+                    .commits
+                    .lock(|commits| commits.take_into(&mut gathered))
                 && let Some(values) = Commits::verified(&gathered, cx.shared.counters)
             {
                 let is_live = cx

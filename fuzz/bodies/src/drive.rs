@@ -138,6 +138,9 @@ struct Bench {
     /// Decoder of the bytes to the drive.
     ear: Decoder,
     comms_start: Option<u64>,
+    /// Number of the last heartbeat; start and number of the last one that was fresh.
+    beat: u8,
+    last_beat: Option<(u16, u8)>,
     lease_end: u64,
     sent: Vec<(Revision, Values)>,
     number: u16,
@@ -170,6 +173,8 @@ impl Bench {
             ticks: 0,
             ear: Decoder::new(),
             comms_start: None,
+            beat: 0,
+            last_beat: None,
             lease_end: 0,
             sent: Vec::new(),
             number: 0,
@@ -190,13 +195,23 @@ impl Bench {
                 self.run(u64::from(bytes.byte()), &readings);
             }
             1 => {
-                let heartbeat = Heartbeat {
-                    seen_tick: link_inputs::near(bytes, now),
-                    lease_left: bytes.u16(),
-                    enable: !bytes.byte().is_multiple_of(8),
-                    start: u16::from(bytes.byte() / 64),
-                };
-                self.send(&ToDrive::Heartbeat(heartbeat));
+                let seen_tick = link_inputs::near(bytes, now);
+                let lease_left = bytes.u16();
+                let enable = !bytes.byte().is_multiple_of(8);
+                let which = bytes.byte();
+                // Now and then one of before.
+                self.beat = self.beat.wrapping_add(match which % 16 {
+                    14 => 200,
+                    15 => 0,
+                    _ => 1,
+                });
+                self.send(&ToDrive::Heartbeat(Heartbeat {
+                    seen_tick,
+                    lease_left,
+                    enable,
+                    start: u16::from(which / 64),
+                    number: self.beat,
+                }));
             }
             // Normal operation: for this many milliseconds, and with a shaft that
             // turns.
@@ -206,7 +221,7 @@ impl Bench {
                     ..Readings::good()
                 };
                 for _ in 0..bytes.byte() % 32 {
-                    self.heartbeat();
+                    self.heartbeat(5_000);
                     self.run(20, &readings);
                     self.read(20);
                 }
@@ -248,9 +263,9 @@ impl Bench {
             // All that arming needs.
             8 => {
                 self.commit(Revision(1), &Values::default());
-                self.heartbeat();
+                self.heartbeat(5_000);
                 self.run(20, &Readings::good());
-                self.heartbeat();
+                self.heartbeat(5_000);
                 for order in [Order::Zero, Order::Arm] {
                     self.number = self.number.wrapping_add(1);
                     self.send(&ToDrive::Command {
@@ -267,24 +282,21 @@ impl Bench {
                 for _ in 0..20 {
                     let now = self.drive.next_tick();
                     let left = end.saturating_sub(now);
-                    self.send(&ToDrive::Heartbeat(Heartbeat {
-                        seen_tick: now,
-                        lease_left: u16::try_from(left).unwrap_or(u16::MAX),
-                        enable: true,
-                        start: 0,
-                    }));
+                    self.heartbeat(u16::try_from(left).unwrap_or(u16::MAX));
                     self.run(20, &Readings::good());
                 }
             }
         }
     }
 
-    fn heartbeat(&mut self) {
+    fn heartbeat(&mut self, lease_left: u16) {
+        self.beat = self.beat.wrapping_add(1);
         self.send(&ToDrive::Heartbeat(Heartbeat {
             seen_tick: self.drive.next_tick(),
-            lease_left: 5_000,
+            lease_left,
             enable: true,
             start: 0,
+            number: self.beat,
         }));
     }
 
@@ -342,7 +354,14 @@ impl Bench {
 
     fn note(&mut self, now: u64, heartbeat: &Heartbeat) {
         let seen = heartbeat.seen_tick;
-        if seen <= now && now - seen <= STALE_TICKS {
+        let is_new = self.last_beat.is_none_or(|(start, number)| {
+            let ahead = heartbeat.number.wrapping_sub(number);
+            let is_silent = (self.comms_start)
+                .is_none_or(|last| now.saturating_sub(last) >= HEARTBEAT_TICKS - 1);
+            start != heartbeat.start || (1..128).contains(&ahead) || is_silent && ahead != 0
+        });
+        if is_new && seen <= now && now - seen <= STALE_TICKS {
+            self.last_beat = Some((heartbeat.start, heartbeat.number));
             self.comms_start = Some(now);
             self.lease_end = seen.saturating_add(u64::from(heartbeat.lease_left));
             if !heartbeat.enable {

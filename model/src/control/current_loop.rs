@@ -79,7 +79,8 @@ settings! {
             id: 23 disarmed,
             symbol: "U",
             unit: "V",
-            range: 1.0..=60.0,
+            // A quarter more has to be within what the supply's converter shows, 52.8 V.
+            range: 1.0..=40.0,
             default: 24.0,
             meaning: "supply voltage of the bridge, in either direction",
         },

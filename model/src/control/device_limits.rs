@@ -32,7 +32,8 @@ settings! {
             unit: "rad/s",
             range: 0.1..=7.33,
             default: 7.33,
-            meaning: "speed of the joint beyond which the device disarms: 7.33 is the gear's 420 deg/s",
+            meaning: "speed of the joint beyond which the device disarms: 7.33 is the gear's 420 deg/s; at 24 V it disarms above \
+                      5.73, as the back-EMF of a faster motor is more than the bridge holds",
         },
     }
 }

@@ -423,6 +423,7 @@ fn to_drive() -> Vec<Example> {
             lease_left: 4_980,
             enable: true,
             start: 7,
+            number: 0xff,
         }),
         ToDrive::Commit {
             revision: Revision(301),

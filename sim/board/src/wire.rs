@@ -10,6 +10,8 @@ use std::collections::VecDeque;
 /// Bytes that the UART carries in a tick: 4.2 Mbaud, ten bits a byte, 50 µs.
 pub const BYTES_PER_TICK: usize = 21;
 
+const TICKS_PER_MS: u64 = 20;
+
 /// Frame buffers of the sender, including the one being encoded.
 const PLACES: usize = 3;
 
@@ -32,6 +34,10 @@ pub struct Wire {
     /// What the sender has come to say in its blocks: a defect of its program, or
     /// of its memory.
     pub falsify: Option<fn(&mut Block)>,
+    /// The sender's program stands still, and its DMA sends the last frame again and
+    /// again, each millisecond.
+    pub repeats: bool,
+    last: Option<Frame>,
     /// The frame being sent, and the number of bytes sent.
     sending: Option<(Frame, usize)>,
     /// Frames after it.
@@ -47,6 +53,8 @@ impl Wire {
         Self {
             injector: FaultInjector::new(seed),
             falsify: None,
+            repeats: false,
+            last: None,
             sending: None,
             waiting: VecDeque::new(),
             on_the_way: VecDeque::new(),
@@ -73,6 +81,15 @@ impl Wire {
         mut next_frame: impl FnMut(bool) -> Option<Frame>,
         mut receive: impl FnMut(u8),
     ) {
+        if self.repeats {
+            if now.is_multiple_of(TICKS_PER_MS)
+                && let Some(frame) = &self.last
+            {
+                self.on_the_way.push_back((now, frame.to_vec()));
+            }
+            self.arrive(now, &mut receive);
+            return;
+        }
         let mut room = BYTES_PER_TICK;
         self.ask(&mut next_frame);
         while room > 0 {
@@ -94,6 +111,7 @@ impl Wire {
                 self.sending = Some((frame, sent + part));
             } else {
                 let frame = falsified(frame, self.falsify);
+                self.last = Some(frame.clone());
                 let on_the_way = &mut self.on_the_way;
                 self.injector.pass(&frame, |late, bytes| {
                     on_the_way.push_back((now + late, bytes.to_vec()));

@@ -8,7 +8,7 @@ use crepitus_board::leg::EncoderWiring;
 use crepitus_protocol::host::{Answer, Operation, Refusal};
 use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::telemetry::{Sample, SampleFlags};
-use crepitus_protocol::{DeviceSettings, LimitReason, State, Values};
+use crepitus_protocol::{DeviceSettings, Fault, LimitReason, State, Values};
 use support::{Host, examination};
 
 /// A leg that is bent from 10° to 80° and back.
@@ -118,6 +118,81 @@ fn a_counter_that_jumps_while_disarmed_ends_the_zero() {
     leg.preset_count(leg.count().wrapping_add(5_000));
     host.run(200);
     assert!(!host.status().zeroed);
+}
+
+/// While it is being armed, whenever: there is never torque about a zero that is none.
+#[test]
+fn a_counter_that_jumps_while_arming_ends_it() {
+    for ticks in (0..500).step_by(9) {
+        let mut host = bending();
+        assert_eq!(host.ask_patiently(Operation::Zero), Ok(Answer::Done));
+        host.renew_every = Some(1_000);
+        let request = host.request(Operation::Arm);
+        host.say(&request);
+        host.run(ticks);
+        let leg = host.device.board_mut().leg_mut();
+        leg.preset_count(leg.count().wrapping_add(5_000));
+        // The jump is taken for the angle after 21 ticks.
+        host.run(40);
+        for _ in 0..2_000 {
+            host.tick();
+            assert!(!host.device.board().is_driven(), "after {ticks} ticks");
+        }
+        assert!(!host.status().zeroed, "after {ticks} ticks");
+        let board = host.device.board();
+        let found = (board.drive().fault(), board.comms().fault());
+        assert!(
+            matches!(
+                found,
+                (Some(Fault::EncoderLost | Fault::SpeedMismatch), None)
+            ) || ticks < 60 && found == (None, None),
+            "after {ticks} ticks: {found:?}"
+        );
+    }
+}
+
+/// Faster than the bridge can hold the motor without a current: there the back-EMF would
+/// brake the leg with what nobody has set.
+#[test]
+fn a_leg_that_is_too_fast_for_the_supply_is_let_go() {
+    let scene = support::scene(
+        r#"
+version = 1
+title = "Fast"
+duration_s = 20.0
+[motion]
+kind = "strokes"
+from_deg = 5.0
+to_deg = 115.0
+peak_speed_deg_s = 370.0
+pause_s = 0.5
+[solver]
+kind = "exact-events"
+step_s = 5e-5
+precision = "f32"
+[effects.crepitus]
+preset = "coarse"
+[effects.encoder]
+"#,
+    );
+    let mut host = Host::new(&scene, &Start::default());
+    host.run(400);
+    host.arm();
+    let mut fastest_rad_s: f64 = 0.0;
+    for _ in 0..30_000 {
+        host.tick();
+        let board = host.device.board();
+        let omega_rad_s = board.leg().shaft().omega_rad_s.abs();
+        if board.is_driven() {
+            fastest_rad_s = fastest_rad_s.max(omega_rad_s);
+            // Ts, and what the gear's friction and the loop's ripple add.
+            let motor_nm = board.leg().motor_nm().abs();
+            assert!(motor_nm < 0.6, "{motor_nm} N·m at {omega_rad_s} rad/s");
+        }
+    }
+    let board = host.device.board();
+    assert_eq!(board.drive().fault(), Some(Fault::Overspeed));
+    assert!((5.5..6.0).contains(&fastest_rad_s), "{fastest_rad_s}");
 }
 
 #[test]

@@ -5,15 +5,17 @@ use crate::drive::coil::CoilOutput;
 use crate::drive::command::Command;
 use crate::drive::emf_check;
 use crate::drive::exchange::Rendered;
-use crate::drive::plausibility::{Observation, Plausibility};
+use crate::drive::plausibility::Observation;
 use crate::drive::safety::Permit;
 use crate::drive::sampler::LOST_TICKS;
 use crepitus_protocol::Fault;
 use crepitus_protocol::counters::DriveCounter;
 
 /// Ticks for which the enable line of comms may be off though comms permits torque:
-/// more than the timeout of heartbeats, which says what is the matter.
+/// more than the timeout of heartbeats, which says what is the matter. Four ticks with the
+/// line make up for one, so that one that comes and goes ends, too.
 const COMMS_LINE_TICKS: u32 = 120;
+const TICK_WITHOUT: u32 = 4;
 
 /// Largest current of a floating bridge, A: twice the largest offset.
 const FLOATING_A: f32 = 0.2;
@@ -33,11 +35,13 @@ impl Command {
     ) -> Permit {
         let is_driving = matches!(permit, Permit::Torque | Permit::Push(_));
         if is_on || !is_driving {
-            self.without_comms_ticks = 0;
+            if self.without_comms > 0 {
+                self.without_comms -= 1;
+            }
             return permit;
         }
-        self.without_comms_ticks = self.without_comms_ticks.saturating_add(1);
-        if self.without_comms_ticks < COMMS_LINE_TICKS {
+        self.without_comms = self.without_comms.saturating_add(TICK_WITHOUT);
+        if self.without_comms < TICK_WITHOUT * COMMS_LINE_TICKS {
             return Permit::Line;
         }
         self.safety.fail(Fault::CommsLineOff, counters);
@@ -68,8 +72,12 @@ impl Command {
         }
     }
 
-    /// The angle's zero is no longer known after counts that may be wrong.
-    pub(super) fn doubt_zero(&mut self, fault_before: Option<Fault>) {
+    /// The angle's zero is no longer known after counts that may be wrong; there is no
+    /// torque without it.
+    pub(super) fn doubt_zero(&mut self, fault_before: Option<Fault>, counters: &Counters) {
+        if self.lost_ticks > LOST_TICKS && self.safety.is_live() {
+            self.safety.fail(Fault::EncoderLost, counters);
+        }
         let fault = self.safety.fault().filter(|_| fault_before.is_none());
         if fault.is_some_and(Fault::doubts_angle) || self.lost_ticks > LOST_TICKS {
             self.zeroed = false;
@@ -164,9 +172,6 @@ impl Command {
         observation: &Observation,
         counters: &Counters,
     ) -> Permit {
-        if !self.was_driven {
-            self.plausibility = Plausibility::default();
-        }
         let fault = self
             .plausibility
             .check(observation, &self.motor, self.speed_limit_rad_s);

@@ -3,7 +3,8 @@
 use crate::support::{Host, examination, scene};
 use crepitus_board::Start;
 use crepitus_board::leg::{CurrentPath, CurrentSensor, EncoderWiring};
-use crepitus_protocol::State;
+use crepitus_protocol::telemetry::SampleFlags;
+use crepitus_protocol::{Fault, State};
 
 /// Armed, on a leg that moves faster than this, rad/s.
 fn rendering(mut host: Host, omega_rad_s: f64) -> Host {
@@ -42,6 +43,69 @@ fn a_dead_sensor_without_a_comparator_ends_by_the_speed() {
         host.device.board().drive().fault()
     );
     assert!(!host.device.board().is_driven());
+}
+
+/// The wire of the line of comms to the drive's pin makes contact now and then. The bridge
+/// floats while it does not, so this is not felt for long; it ends, too, however it comes and goes.
+#[test]
+fn a_line_of_comms_that_comes_and_goes_ends_torque() {
+    for (off, on) in [(119, 1), (50, 50), (3, 1), (1, 3)] {
+        let mut host = rendering(Host::new(&examination(), &Start::default()), 0.5);
+        let ticks = (0..3_000_u64).position(|n| {
+            let is_on = n % (off + on) >= off;
+            host.device.board_mut().set_comms_line_wire(is_on);
+            host.tick();
+            host.device.board().drive().fault() == Some(Fault::CommsLineOff)
+        });
+        assert!(
+            ticks.is_some_and(|ticks| ticks < 2_000),
+            "{off}, {on}: {ticks:?}"
+        );
+    }
+    let mut host = rendering(Host::new(&examination(), &Start::default()), 0.5);
+    for n in 0..20_000_u64 {
+        host.device.board_mut().set_comms_line_wire(n % 100 >= 10);
+        host.tick();
+        assert_eq!(host.device.board().drive().state(), State::Armed, "{n}");
+    }
+}
+
+/// When it is back, torque grows as after arming.
+#[test]
+fn torque_that_was_interrupted_comes_back_slowly() {
+    let mut host = Host::new(&examination(), &Start::default());
+    host.run(400);
+    host.set("crepitus.inertia_kg_m2", 0.03);
+    host.set("crepitus.static_torque_nm", 1.1);
+    host.set("crepitus.kinetic_torque_nm", 1.0);
+    host.set("limits.slew_nm_per_s", 50.0);
+    host.subscribe();
+    let mut host = rendering(host, 0.9);
+    host.device.board_mut().set_comms_line_wire(false);
+    host.run(60);
+    host.samples = Some(Vec::new());
+    host.device.board_mut().set_comms_line_wire(true);
+    host.run(1_500);
+    assert_eq!(host.device.board().drive().state(), State::Armed);
+    let samples = host.samples.take().expect("samples");
+    let off = (samples.iter()).take_while(|s| !s.flags.has(SampleFlags::ENERGISED));
+    let off = off.count();
+    assert!(off > 0, "{off}");
+    let driven = &samples[off..];
+    let mut last_nm = 0.0;
+    let mut ramps = 0;
+    let mut most_nm: f32 = 0.0;
+    for sample in driven {
+        let step_nm = sample.torque_nm.abs() - last_nm;
+        // 2.5 mN·m a tick are allowed until it is the model's; the model's own jumps are exempt.
+        let is_ramp = sample.torque_nm.abs() < 0.9 * sample.model_torque_nm.abs();
+        assert!(!is_ramp || step_nm <= 0.003, "{step_nm} N·m in a tick");
+        last_nm = sample.torque_nm.abs();
+        ramps += usize::from(is_ramp);
+        most_nm = most_nm.max(last_nm);
+    }
+    assert!(most_nm > 0.8, "{most_nm}");
+    assert!(ramps > 200, "{ramps}");
 }
 
 /// An encoder that freezes under a slow motion shows no difference of speeds

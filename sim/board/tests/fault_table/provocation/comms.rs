@@ -8,8 +8,8 @@ use crate::case::Moment::Disarmed;
 use crate::case::{Case, case, is_disarmed};
 use crepitus_board::board::Controller::{Comms, Drive};
 use crepitus_protocol::management::ResetCause::{BrownOut, Panic, Power, Watchdog};
-use crepitus_protocol::schema;
 use crepitus_protocol::telemetry::{Block, BlockFlags, Sample};
+use crepitus_protocol::{State, schema};
 
 pub(super) fn torque_beyond_bounds() -> Vec<Case> {
     vec![
@@ -24,6 +24,9 @@ pub(super) fn torque_beyond_bounds() -> Vec<Case> {
         }),
         says("its torque is NaN", |block| {
             each(block, |sample| sample.torque_nm = f32::NAN);
+        }),
+        says("it says that it is not armed", |block| {
+            block.flags = BlockFlags::new(State::Disarmed, true, block.flags.start().into());
         }),
     ]
 }

@@ -13,10 +13,17 @@ use crate::case::{
 use crate::support::Host;
 use crepitus_board::Faults;
 use crepitus_board::board::Controller::{self, Comms, Drive};
+use crepitus_board::leg::CurrentPath;
 use crepitus_board::leg::CurrentSensor::{Gain, Offset, StuckAt};
 use crepitus_model::Sense;
 use crepitus_protocol::TICK_US;
 use crepitus_protocol::management::ResetCause::{BrownOut, Panic, Requested, Watchdog};
+
+/// More than a condition that comes and goes takes beside one that holds for a few ticks.
+const RECURRING_TICKS: u64 = 6;
+
+/// Ticks without a count after which it is lost.
+const LOST_TICKS: u64 = 20;
 
 pub(super) fn comms_silent() -> Vec<Case> {
     vec![
@@ -67,6 +74,12 @@ pub(super) fn comms_silent() -> Vec<Case> {
         )
         .settled(heartbeat),
         case(
+            "the last heartbeat comes again and again",
+            |host, _| board(host).down().repeats = true,
+            |host| board(host).down().repeats = false,
+        )
+        .settled(heartbeat),
+        case(
             "comms hangs",
             |host, since| once(since, host, |board| board.hang(Comms)),
             restart_comms,
@@ -103,6 +116,15 @@ pub(super) fn current_missing() -> Vec<Case> {
     vec![
         case("the converter stops", stop_converter, mend_converters),
         case("that of the monitor stops", stop_monitor, mend_converters),
+        case(
+            "that of the monitor stops in every second tick",
+            |host, since| {
+                let runs = since.is_multiple_of(2);
+                board(host).set_converter(CurrentPath::Monitor, runs);
+            },
+            mend_converters,
+        )
+        .lag(RECURRING_TICKS),
         case(
             "the converter does not run",
             stop_converter,
@@ -176,6 +198,15 @@ pub(super) fn encoder_lost() -> Vec<Case> {
             };
             jump_count(board(host), counts);
         }),
+        reset("interference in every second tick", |host, since| {
+            let counts = if since.is_multiple_of(2) {
+                90_000
+            } else {
+                -90_000
+            };
+            jump_count(board(host), counts);
+        })
+        .lag(2 * LOST_TICKS),
         reset("a disturbed counter", |host, since| {
             once(since, host, |board| jump_count(board, 90_000));
         }),
