@@ -142,7 +142,7 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "encoder-lost",
         cause: "a broken encoder line, or interference",
         detector: Detector::Drive,
-        detection: "20 consecutive ticks (1 ms) without a plausible count",
+        detection: "20 ticks (1 ms) without a plausible count; five with one make up for one without",
         reaction: FLOAT,
         within_ticks: Some(21),
         clear: REPAIR,
@@ -150,10 +150,10 @@ pub const FAULTS: [FaultSpec; 48] = [
     FaultSpec {
         fault: Fault::Overspeed,
         name: "overspeed",
-        cause: "the joint turns faster than its gear permits",
+        cause: "the joint turns faster than its gear permits, or than the supply could hold the motor's current",
         detector: Detector::Drive,
-        detection: "the estimated speed is above limits.speed_rad_s for 20 ticks (1 ms) while armed; \
-                    the estimate lags a speed that grows by up to 150 ticks",
+        detection: "the estimated speed is above limits.speed_rad_s, or above 95 % of that whose back-EMF is the bridge's \
+                    largest voltage (5.73 rad/s at 24 V), for 20 ticks (1 ms) while armed; the estimate lags a speed that grows by up to 150 ticks",
         reaction: FLOAT,
         within_ticks: Some(170),
         clear: CLEAR,
@@ -207,7 +207,8 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "current-missing",
         cause: "the converter does not run",
         detector: Detector::Drive,
-        detection: "3 consecutive ticks without a measured current, from one of the sensors, while armed",
+        detection: "3 ticks without a measured current, from one of the sensors, while armed; five with both make up for \
+                    one without",
         reaction: FLOAT,
         within_ticks: Some(4),
         clear: REPAIR,
@@ -238,7 +239,7 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "enable-stuck-off",
         cause: "the drive's enable line cannot be switched on, or falls while armed",
         detector: Detector::Drive,
-        detection: "the line is read back every tick",
+        detection: "the line is read back off in 9 ticks; five with it on make up for one",
         reaction: FLOAT,
         within_ticks: Some(10),
         clear: REPAIR,
@@ -248,7 +249,7 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "rendering-late",
         cause: "the model's task does not finish within its tick, or its timer has stopped or is out of step",
         detector: Detector::Drive,
-        detection: "20 consecutive ticks without a new result; one in time makes up for a quarter of one that is late",
+        detection: "20 ticks without a new result; one in time makes up for a fifth of one that is late",
         reaction: FLOAT,
         within_ticks: Some(21),
         clear: CLEAR,
@@ -298,7 +299,8 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "current-disagreement",
         cause: "one of the two shunts, amplifiers or converters of the motor's current is broken or has drifted",
         detector: Detector::Drive,
-        detection: "the two sensors of the current differ by more than 0.2 A in 2 consecutive ticks while armed",
+        detection: "the two sensors of the current differ by more than 0.2 A in 2 ticks while armed; five in which they do not make up \
+                    for one",
         reaction: FLOAT,
         within_ticks: Some(3),
         clear: REPAIR,
@@ -308,7 +310,8 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "tick-irregular",
         cause: "the timer of the drive's tasks is disturbed, or something holds up its most urgent task",
         detector: Detector::Drive,
-        detection: "the time between two ticks, by another timer, is not 50 ± 5 µs 3 consecutive times while armed",
+        detection: "the time between two ticks, by another timer, is not 50 ± 5 µs 3 times while armed; five \
+                    that are make up for one",
         reaction: FLOAT,
         within_ticks: Some(4),
         clear: CLEAR,
@@ -318,8 +321,8 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "comms-line-off",
         cause: "the wire by which the drive reads the enable line of comms is broken",
         detector: Detector::Drive,
-        detection: "that line reads off for 120 ticks (6 ms) while comms permits torque, or for 2,000 at arming; the bridge \
-                    floats meanwhile",
+        detection: "that line reads off for 120 ticks (6 ms) while comms permits torque, of which four with the line make up \
+                    for one, or for 2,000 at arming; the bridge floats meanwhile",
         reaction: FLOAT,
         within_ticks: Some(2),
         clear: REPAIR,
@@ -393,15 +396,15 @@ pub const FAULTS: [FaultSpec; 48] = [
         cause: "more torque for longer than the gear bears",
         detector: Detector::Drive,
         detection: "the square of the current above that of motor.continuous_a sums up to what the largest current gives \
-                    in a second",
+                    in a second: after 1.1 s of 4.5 N·m, later with less",
         reaction: FLOAT,
-        within_ticks: Some(20_300),
+        within_ticks: Some(21_800),
         clear: CLEAR,
     },
     FaultSpec {
         fault: Fault::DriveGateStuck,
         name: "drive-gate-stuck",
-        cause: "an output of the drive's gate does not follow its enable line",
+        cause: "two outputs or more of the drive's gate do not follow its enable line",
         detector: Detector::Drive,
         detection: "a push of 0.6 V at arming, with the drive's line off and that of comms on, moves current: more than \
                     0.15 A in 2 consecutive ticks",
@@ -412,7 +415,7 @@ pub const FAULTS: [FaultSpec; 48] = [
     FaultSpec {
         fault: Fault::CommsGateStuck,
         name: "comms-gate-stuck",
-        cause: "an output of the gate of comms does not follow its enable line",
+        cause: "two outputs or more of the gate of comms do not follow its enable line",
         detector: Detector::Drive,
         detection: "the same with the line of comms off and the drive's on; or the line of comms reads on before it should",
         reaction: "the push ends and the bridge floats; arming is refused",
@@ -535,7 +538,7 @@ pub const FAULTS: [FaultSpec; 48] = [
         cause: "the drive computes wrongly",
         detector: Detector::Comms,
         detection: "in 4 consecutive samples the torque is above limits.torque_nm, or the model's above its static \
-                    torque, as committed",
+                    torque, as committed; or 24 samples with torque of a drive that says it is not armed",
         reaction: LINE_OFF,
         within_ticks: Some(100),
         clear: REPAIR,
@@ -545,7 +548,8 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "current-beside-torque",
         cause: "the drive's current loop does not follow, and it does not react",
         detector: Detector::Comms,
-        detection: "in 120 consecutive samples that are not limited the current is more than 0.25 A from that of the torque",
+        detection: "in 120 consecutive samples that are not limited the current is more than 0.25 A from that of the torque, or \
+                    missing though there is torque",
         reaction: LINE_OFF,
         within_ticks: Some(220),
         clear: REPAIR,
@@ -555,7 +559,7 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "comms-overspeed",
         cause: "the drive does not react to too much speed",
         detector: Detector::Comms,
-        detection: "in 3 consecutive blocks the counts are above 1.15 times limits.speed_rad_s",
+        detection: "in 3 sound blocks in a row the counts are above 1.15 times limits.speed_rad_s; blocks may be missing between",
         reaction: LINE_OFF,
         within_ticks: Some(160),
         clear: CLEAR,

@@ -99,6 +99,12 @@ mod tests {
         // 1.2 A: 0.974 A²s / 0.5375 A².
         let ticks = until(0.95, constant(1.2)).unwrap();
         assert!(ticks.abs_diff(362) < 5, "{ticks}");
+        // 4.5 N·m, the largest torque: what the table of faults says, in ticks of 50 µs.
+        let ticks = 100 * until(0.95, constant(1.345)).unwrap();
+        let all = crepitus_protocol::fault::FAULTS;
+        let spec = all.iter().find(|spec| spec.fault == Fault::Overload);
+        let within = spec.unwrap().within_ticks.unwrap();
+        assert!((within - 500..within).contains(&ticks), "{ticks}");
     }
 
     #[test]

@@ -14,6 +14,7 @@ use crate::support::Host;
 use crepitus_board::board::Controller::{Comms, Drive};
 use crepitus_protocol::Fault;
 use crepitus_protocol::management::ResetCause::{Requested, Watchdog};
+use crepitus_protocol::telemetry::NO_CURRENT;
 
 /// How a fault comes about.
 pub(crate) enum Provocation {
@@ -61,7 +62,7 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
         Fault::SupplyHigh => slow::supply_high(),
         Fault::MotorHot => slow::motor_hot(),
         Fault::JointMismatch => slow::joint_mismatch(),
-        Fault::Overload => vec![slow::overload()],
+        Fault::Overload => slow::overload(),
         Fault::DriveGateStuck => vec![drive::gate_stuck(Drive)],
         Fault::CommsGateStuck => vec![drive::gate_stuck(Comms)],
         Fault::DriveImageBroken
@@ -99,9 +100,14 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
             comms::each(block, |sample| sample.current_ma = 2_000);
         })],
         Fault::TorqueBeyondBounds => comms::torque_beyond_bounds(),
-        Fault::CurrentBesideTorque => vec![comms::says("it says 0.5 A", |block| {
-            comms::each(block, |sample| sample.current_ma = 500);
-        })],
+        Fault::CurrentBesideTorque => vec![
+            comms::says("it says 0.5 A", |block| {
+                comms::each(block, |sample| sample.current_ma = 500);
+            }),
+            comms::says("it has no current", |block| {
+                comms::each(block, |sample| sample.current_ma = NO_CURRENT);
+            }),
+        ],
         Fault::TorqueOutsideRange => comms::torque_outside_range(),
         Fault::CommsOverspeed => comms::comms_overspeed(),
         Fault::CommsWatchdog => comms::comms_watchdog(),
