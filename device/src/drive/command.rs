@@ -398,7 +398,7 @@ impl Command {
             is_late,
             counters,
         );
-        self.doubt_zero(fault_before, counters);
+        self.doubt_zero(fault_before);
         let flags = BlockFlags::new(self.safety.state(), self.zeroed, self.start);
         let phases = rendered.phases.into();
         self.batch

@@ -48,7 +48,8 @@ impl Command {
         Permit::Nothing
     }
 
-    /// Withdraws the permit outside the range of motion, and for what changes slowly.
+    /// Withdraws the permit outside the range of motion, or without a zero of it, and for what
+    /// changes slowly.
     pub(super) fn guarded(
         &mut self,
         permit: Permit,
@@ -58,7 +59,10 @@ impl Command {
         counters: &Counters,
     ) -> Permit {
         let overload = self.overload.tick(current_a);
-        let live = if self.safety.is_live() {
+        let live = if self.lost_ticks > LOST_TICKS && self.safety.is_live() {
+            // Another count is taken for the angle, of which the zero is not known.
+            Some(Fault::EncoderLost)
+        } else if self.safety.is_live() {
             self.range.check(fades_left).or(overload)
         } else {
             None
@@ -72,12 +76,8 @@ impl Command {
         }
     }
 
-    /// The angle's zero is no longer known after counts that may be wrong; there is no
-    /// torque without it.
-    pub(super) fn doubt_zero(&mut self, fault_before: Option<Fault>, counters: &Counters) {
-        if self.lost_ticks > LOST_TICKS && self.safety.is_live() {
-            self.safety.fail(Fault::EncoderLost, counters);
-        }
+    /// The angle's zero is no longer known after counts that may be wrong.
+    pub(super) fn doubt_zero(&mut self, fault_before: Option<Fault>) {
         let fault = self.safety.fault().filter(|_| fault_before.is_none());
         if fault.is_some_and(Fault::doubts_angle) || self.lost_ticks > LOST_TICKS {
             self.zeroed = false;
