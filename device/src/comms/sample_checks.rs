@@ -434,7 +434,7 @@ mod tests {
                     first_tick: u64::try_from(n).unwrap() * 20,
                     flags: BlockFlags::new(State::Armed, true, 1),
                     samples: core::array::from_fn(|k| Sample {
-                        count: (n * 20 + k as i32) * 12,
+                        count: (n * 20 + i32::try_from(k).unwrap()) * 12,
                         flags: energised(0.0)
                             .flags
                             .with(SampleFlags::LOST, is_lost && k == 7),

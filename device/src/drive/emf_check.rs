@@ -189,7 +189,7 @@ mod tests {
             count: (f32::from(n) * 5e-5 / RAD_PER_COUNT).floor() as i32,
         };
         for period in 2..=12 {
-            let known = |n: u16, tick: Tick| (n % period > 0).then_some(tick);
+            let known = |n: u16, tick: Tick| (!n.is_multiple_of(period)).then_some(tick);
             let mut check = EmfCheck::default();
             let found = (0..200).find(|n| {
                 let stands = Tick {

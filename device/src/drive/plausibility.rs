@@ -57,7 +57,7 @@ const TICK: u16 = 5;
 const fn check(fault: Fault, ticks: u16) -> Check {
     Check {
         fault,
-        most: ticks * TICK,
+        most: ticks.saturating_mul(TICK),
         forgets: u16::MAX,
     }
 }
@@ -67,7 +67,7 @@ const fn check(fault: Fault, ticks: u16) -> Check {
 const fn recurring(fault: Fault, ticks: u16) -> Check {
     Check {
         fault,
-        most: ticks * TICK,
+        most: ticks.saturating_mul(TICK),
         forgets: 1,
     }
 }
@@ -85,11 +85,13 @@ const TABLE: [Check; CHECKS] = [
     recurring(Fault::CurrentMissing, 3),
     recurring(Fault::TickIrregular, 3),
     recurring(Fault::EnableStuckOff, 9),
-    recurring(Fault::EncoderLost, LOST_TICKS as u16),
+    recurring(Fault::EncoderLost, 20),
     check(Fault::Overspeed, 20),
     check(Fault::CurrentMismatch, 100),
     check(Fault::SpeedMismatch, 400),
 ];
+
+const _: () = assert!(TABLE[8].most as u32 == LOST_TICKS * TICK as u32);
 
 /// Its place in the table.
 const MISMATCH: usize = 10;

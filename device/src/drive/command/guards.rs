@@ -35,9 +35,7 @@ impl Command {
     ) -> Permit {
         let is_driving = matches!(permit, Permit::Torque | Permit::Push(_));
         if is_on || !is_driving {
-            if self.without_comms > 0 {
-                self.without_comms -= 1;
-            }
+            self.without_comms = self.without_comms.saturating_sub(1);
             return permit;
         }
         self.without_comms = self.without_comms.saturating_add(TICK_WITHOUT);
