@@ -205,7 +205,7 @@ impl<F: Real> Law for ClaspKnife<F> {
         let along = if s.muscles == 0 { 1.0 } else { -1.0 };
         if (s.release_deg - s.onset_deg) * along <= 0.0 {
             return Err(SettingsError::Contradiction {
-                reason: "clasp-knife: release_deg is beyond onset_deg in the sense of the stretch: \
+                reason: "clasp-knife: release_deg must be beyond onset_deg in the sense of the stretch: \
                          larger for extensors, smaller for flexors",
             });
         }

@@ -220,7 +220,7 @@ impl<F: Real> Law for Clonus<F> {
         s.validate()?;
         if libm::trunc(s.beats) < s.beats {
             return Err(SettingsError::Contradiction {
-                reason: "clonus: beats is a whole number; 0 is without end",
+                reason: "clonus: beats must be a whole number; 0 is without end",
             });
         }
         Ok(())

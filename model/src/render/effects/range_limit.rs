@@ -157,12 +157,12 @@ impl EndFeel {
         let spring = self.spring_nm_per_rad();
         if spring > MOST_SPRING_NM_PER_RAD {
             return Err(SettingsError::Contradiction {
-                reason: "range-limit: √(K1² + 4·K2·Tcap)/(1 − loss) is at most 1000 N·m/rad",
+                reason: "range-limit: √(K1² + 4·K2·Tcap)/(1 − loss) must be at most 1000 N·m/rad",
             });
         }
         if spring > LOSSLESS_SPRING_NM_PER_RAD && self.loss < LEAST_LOSS {
             return Err(SettingsError::Contradiction {
-                reason: "range-limit: an end whose √(K1² + 4·K2·Tcap)/(1 − loss) is above 400 N·m/rad has \
+                reason: "range-limit: an end whose √(K1² + 4·K2·Tcap)/(1 − loss) is above 400 N·m/rad must have \
                          a loss of at least 0.1",
             });
         }
@@ -418,7 +418,7 @@ impl<F: Real> Law for RangeLimit<F> {
         s.validate()?;
         if s.flexion_limit_deg < s.extension_limit_deg + LEAST_RANGE_DEG {
             return Err(SettingsError::Contradiction {
-                reason: "range-limit: flexion_limit_deg is at least 5 deg beyond extension_limit_deg",
+                reason: "range-limit: flexion_limit_deg must be at least 5 deg beyond extension_limit_deg",
             });
         }
         for end in [s.extension(), s.flexion()] {

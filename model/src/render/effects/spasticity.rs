@@ -258,7 +258,7 @@ impl<F: Real> Law for Spasticity<F> {
         // Rounding must not refuse the least shift itself.
         if s.form == 1 && s.velocity_shift_s * (1.0 + 1e-9) < s.delay_s + s.activation_s {
             return Err(SettingsError::Contradiction {
-                reason: "spasticity: in the form reflex velocity_shift_s is no less than delay_s + activation_s: \
+                reason: "spasticity: in the form reflex velocity_shift_s must be no less than delay_s + activation_s: \
                          otherwise it gives energy at every speed",
             });
         }

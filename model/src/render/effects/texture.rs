@@ -220,20 +220,20 @@ impl<F: Real> Law for Texture<F> {
         s.validate()?;
         if libm::trunc(s.seed) < s.seed {
             return Err(SettingsError::Contradiction {
-                reason: "texture: seed is a whole number",
+                reason: "texture: seed must be a whole number",
             });
         }
         let height_nm = s.peak_nm - s.base_nm;
         if height_nm < 0.0 {
             return Err(SettingsError::Contradiction {
-                reason: "texture: peak_nm is no less than base_nm",
+                reason: "texture: peak_nm must be no less than base_nm",
             });
         }
         let width_rad = s.width_share * s.pitch_deg.to_radians();
         // Rounding must not refuse the least stiffness itself.
         if s.stiffness_nm_per_rad * (1.0 + 1e-9) < 2.0 * height_nm / width_rad {
             return Err(SettingsError::Contradiction {
-                reason: "texture: stiffness_nm_per_rad is no less than \
+                reason: "texture: stiffness_nm_per_rad must be no less than \
                          2(peak_nm − base_nm)/(width_share·pitch_deg), the angle in rad",
             });
         }
