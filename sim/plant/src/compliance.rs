@@ -263,7 +263,7 @@ impl Chain for Compliance {
         if radians > MOST_RADIANS || decay > MOST_DECAY {
             let Kind { effect, body, .. } = self.kind;
             warnings.push(format!(
-                "step long against the {effect}: for a {body} of {} kg·m² on {} N·m/rad and {} N·m·s/rad ω·h = {radians:.2} \
+                "step long against the {effect}: for a {body} of {:.3e} kg·m² on {:.3} N·m/rad and {:.3} N·m·s/rad ω·h = {radians:.2} \
                  (at most {MOST_RADIANS}) and b·h/J = {decay:.2} (at most {MOST_DECAY}); {}",
                 self.left_kg_m2(),
                 self.stiffness,

@@ -20,7 +20,7 @@
 use crate::branch::{Branched, Loose};
 use crate::chain::{Body, Chain, Push, Step, Weight};
 use crate::compliance::{Compliance, Kind};
-use crate::effect::{Context, Effect, Given, OnChain, Part, numbers};
+use crate::effect::{Context, Effect, Given, Need, OnChain, Part, numbers};
 use crate::effects::limb::STANDARD_GRAVITY;
 use crate::energy_balance::{Account, EnergyBalance};
 use crate::load::{Load, Loaded};
@@ -75,7 +75,10 @@ pub const EFFECT: Effect = Effect {
         default: 0,
         meaning: "what the hand holds: the shell, or the leg beside it",
     }],
-    needs: &[],
+    needs: &[Need {
+        effect: "limb",
+        why: "it is the shank that it sits on",
+    }],
     part: Part::Shell(join),
 };
 
