@@ -47,6 +47,16 @@ pub(crate) struct Document {
     defaults: Defaults,
 }
 
+/// An override as errors repeat it: one line, and no long one.
+fn shortened(flag: &str) -> String {
+    const LONGEST: usize = 80;
+    let line = flag.replace('\n', "\\n");
+    match line.char_indices().nth(LONGEST) {
+        None => line,
+        Some((end, _)) => format!("{}…", line.get(..end).unwrap_or_default()),
+    }
+}
+
 impl Document {
     /// Parses `text`, which stands in `file`.
     pub(crate) fn parse(file: &Path, text: &str) -> Result<Self, SceneError> {
@@ -68,7 +78,7 @@ impl Document {
     /// Puts `value` (TOML, or plain text where that is no TOML) at the dotted
     /// `path`, whether there was something or not.
     pub(crate) fn set(&mut self, flag: &str, path: &str, value: &str) -> Result<(), SceneError> {
-        let origin = Origin::Override(flag.to_owned());
+        let origin = Origin::Override(shortened(flag));
         let refuse = |message: String| SceneError {
             file: self.file.clone(),
             origin: Some(origin.clone()),

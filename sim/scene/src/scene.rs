@@ -25,6 +25,8 @@ use crepitus_plant::chain::Body;
 use crepitus_plant::effect::{Context, Effect, Given};
 use crepitus_plant::{Motion, Plant};
 use solver::{REFERENCE, read_solver, read_trace_step};
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// The only version of scene files so far.
@@ -278,6 +280,9 @@ impl Scene {
     }
 }
 
+/// The longest scene file; a device file may have no end.
+const MOST_BYTES: u64 = 16_000_000;
+
 /// The text of a file.
 pub(crate) fn text_of(file: &Path) -> Result<String, SceneError> {
     let whole = |message: String| SceneError {
@@ -286,7 +291,16 @@ pub(crate) fn text_of(file: &Path) -> Result<String, SceneError> {
         key: String::new(),
         message,
     };
-    let bytes = std::fs::read(file).map_err(|e| whole(format!("cannot be read: {e}")))?;
+    let mut bytes = Vec::new();
+    File::open(file)
+        .and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes))
+        .map_err(|e| whole(format!("cannot be read: {e}")))?;
+    if bytes.len() as u64 > MOST_BYTES {
+        return Err(whole(format!(
+            "is longer than {} MB: this is no scene",
+            MOST_BYTES / 1_000_000
+        )));
+    }
     String::from_utf8(bytes).map_err(|e| whole(format!("is not UTF-8 text: {}", e.utf8_error())))
 }
 

@@ -1,6 +1,6 @@
 //! The scenes that ship, embedded in the program.
 
-use crate::error::SceneError;
+use crate::error::{Origin, SceneError};
 use crate::scene::{Overrides, Scene, text_of};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -189,10 +189,19 @@ impl Source {
     /// # Errors
     /// As [`Scene::parse`]; or the recording is not the one of the run that is repeated.
     pub fn scene(&self, overrides: &Overrides) -> Result<Scene, SceneError> {
-        let mut scene = Scene::parse(&self.file, &self.text, overrides)?;
+        let scene = Scene::parse(&self.file, &self.text, overrides);
         let Some(repeated) = &self.repeated else {
-            return Ok(scene);
+            return scene;
         };
+        // The summary has its own text of the scene: the file of that name may be fine.
+        let mut scene = scene.map_err(|error| SceneError {
+            file: repeated.summary.clone(),
+            origin: error
+                .origin
+                .filter(|origin| matches!(origin, Origin::Override(_))),
+            message: format!("in `scene_as_run`: {}", error.message),
+            ..error
+        })?;
         if let (Some(then), Some(now)) = (&repeated.data_sha256, &scene.data)
             && *then != now.sha256
         {

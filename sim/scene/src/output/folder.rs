@@ -28,6 +28,12 @@ impl Folder {
                 "there is a file of this name",
             ));
         }
+        // Of a name that is too long the system would tell only when the files are moved.
+        if let Err(error) = fs::symlink_metadata(target)
+            && error.kind() == io::ErrorKind::InvalidFilename
+        {
+            return Err(error);
+        }
         let parent = match target.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent,
             _ => Path::new("."),
@@ -52,8 +58,14 @@ impl Folder {
     pub fn file(&self, name: &str) -> io::Result<BufWriter<File>> {
         Ok(BufWriter::with_capacity(
             1 << 16,
-            File::create(self.files.join(name))?,
+            File::create(self.path_of(Path::new(name)))?,
         ))
+    }
+
+    /// Where a file of this name is written, for what creates its files itself.
+    #[must_use]
+    pub fn path_of(&self, name: &Path) -> PathBuf {
+        self.files.join(name)
     }
 
     /// Finishes a file: everything is on the disk when this returns.
@@ -169,6 +181,14 @@ mod tests {
         let folder = Folder::create(&target).unwrap();
         folder.file("a.txt").unwrap().write_all(b"half").unwrap();
         drop(folder);
+        assert_eq!(names(home.path()), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_name_that_is_too_long_is_told_at_once() {
+        let home = tempfile::tempdir().unwrap();
+        let error = Folder::create(&home.path().join("x".repeat(300))).unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::InvalidFilename);
         assert_eq!(names(home.path()), Vec::<String>::new());
     }
 

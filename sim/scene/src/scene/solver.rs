@@ -136,7 +136,7 @@ pub(super) fn read_trace_step(
             if duration_s / step_s > MOST_STEPS {
                 return Err(solver_section.key_error(
                     "step_s",
-                    format!("{step_s} s makes more than {MOST_STEPS:e} steps of {duration_s} s"),
+                    format!("steps of {step_s} s are more than {MOST_STEPS:e} in {duration_s} s"),
                 ));
             }
             if duration_s < step_s * (1.0 - 1e-9) {
