@@ -18,10 +18,13 @@ const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// Capacity of the queue of finished rows, per thread.
 const WAITING: usize = 64;
 
+/// The most threads: more than any computer has cores.
+const MOST_THREADS: usize = 4096;
+
 /// Receiver of rows.
 pub trait Receiver {
     /// Error that ends the sweep.
-    type Error: From<io::Error>;
+    type Error: From<Ended>;
 
     /// Takes the row of a run.
     fn row(&mut self, row: Row) -> Result<(), Self::Error>;
@@ -37,25 +40,33 @@ pub enum Ended {
     Stopped,
     /// A file of its own could not be written.
     Failed(io::Error),
+    /// Not one thread could be started.
+    NoThread(io::Error),
 }
 
-/// Runs the points of `ranges` by `run` on `threads` threads, at least one.
+/// Runs the points of `ranges` by `run` on `threads` threads: at least one, no more than
+/// points, and fewer where the system gives fewer.
 ///
 /// # Errors
-/// The receiver's, or of a run's own file; runs that have begun are abandoned then.
+/// The receiver's, or of a run's own file; runs that have begun are abandoned then. Or there is
+/// no thread.
 pub fn run_all<R: Receiver>(
     ranges: impl IntoIterator<Item = Range<u64>, IntoIter: Send>,
     threads: usize,
     receiver: &mut R,
     run: impl Fn(u64, &Stop) -> Result<Row, Ended> + Sync,
 ) -> Result<(), R::Error> {
+    let ranges: Vec<_> = ranges.into_iter().collect();
+    let count: u64 = ranges.iter().map(|range| range.end - range.start).sum();
+    let most = usize::try_from(count).unwrap_or(MOST_THREADS);
+    let threads = threads.min(most).clamp(1, MOST_THREADS);
     let points = Mutex::new(ranges.into_iter().flatten());
     let stop = Stop::default();
     thread::scope(|scope| {
-        let (sender, rows) = mpsc::sync_channel(WAITING * threads.max(1));
-        for _ in 0..threads.max(1) {
+        let (sender, rows) = mpsc::sync_channel(WAITING * threads);
+        for number in 0..threads {
             let (sender, points, run, stop) = (sender.clone(), &points, &run, &stop);
-            scope.spawn(move || {
+            let started = thread::Builder::new().spawn_scoped(scope, move || {
                 // A poisoned lock: another thread panicked outside of a run.
                 while let Some(point) = points.lock().ok().and_then(|mut points| points.next()) {
                     let row = run(point, stop);
@@ -65,6 +76,11 @@ pub fn run_all<R: Receiver>(
                     }
                 }
             });
+            match started {
+                Ok(_) => {}
+                Err(error) if number == 0 => return Err(Ended::NoThread(error).into()),
+                Err(_) => break,
+            }
         }
         drop(sender);
         let outcome = receive(&rows, receiver);
@@ -84,8 +100,8 @@ fn receive<R: Receiver>(
     loop {
         match rows.recv_timeout(POLL_INTERVAL) {
             Ok(Ok(row)) => receiver.row(row)?,
-            Ok(Err(Ended::Failed(e))) => return Err(e.into()),
             Ok(Err(Ended::Stopped)) | Err(RecvTimeoutError::Timeout) => {}
+            Ok(Err(ended)) => return Err(ended.into()),
             Err(RecvTimeoutError::Disconnected) => return Ok(()),
         }
         receiver.poll()?;
@@ -137,4 +153,45 @@ impl Observer for Unseen<'_> {
 pub fn totals(plan: &Plan, point: u64, stop: &Stop) -> Result<Row, Ended> {
     stop.check()?;
     plan.run(point, |scene| run(scene, &mut Unseen(stop)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// Wants nothing.
+    struct Nobody;
+
+    impl Receiver for Nobody {
+        type Error = Ended;
+
+        fn row(&mut self, _: Row) -> Result<(), Ended> {
+            Ok(())
+        }
+
+        fn poll(&mut self) -> Result<(), Ended> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn there_are_no_more_threads_than_points() {
+        let seen = Mutex::new(BTreeSet::new());
+        let ran = Mutex::new(BTreeSet::new());
+        let outcome = run_all([0..2, 5..6], usize::MAX, &mut Nobody, |point, _| {
+            ran.lock().unwrap().insert(point);
+            seen.lock()
+                .unwrap()
+                .insert(format!("{:?}", thread::current().id()));
+            thread::sleep(Duration::from_millis(20));
+            Ok(Row {
+                index: point,
+                cells: Vec::new(),
+            })
+        });
+        assert!(outcome.is_ok(), "{outcome:?}");
+        assert_eq!(ran.into_inner().unwrap(), BTreeSet::from([0, 1, 5]));
+        assert!(seen.into_inner().unwrap().len() <= 3);
+    }
 }

@@ -27,7 +27,7 @@ pub enum PointsError {
         what: String,
     },
     /// An empty cell.
-    #[error("line {line}: {path} is empty")]
+    #[error("line {line}: `{path}` is empty")]
     Empty {
         /// Line, from 1.
         line: usize,
@@ -74,7 +74,7 @@ impl Points {
             let what = if path.is_empty() {
                 "no name".to_owned()
             } else if paths[..place].contains(path) {
-                format!("the name {path} for the second time")
+                format!("the name `{path}` for the second time")
             } else {
                 continue;
             };
@@ -126,9 +126,12 @@ mod tests {
     #[test]
     fn what_is_wrong_is_said_with_its_line() {
         for (text, word) in [
-            ("a,a\n1,2\n", "column 2 has the name a for the second time"),
+            (
+                "a,a\n1,2\n",
+                "column 2 has the name `a` for the second time",
+            ),
             ("a,\n1,2\n", "column 2 has no name"),
-            ("a,b\n1,2\n3,\n", "line 3: b is empty"),
+            ("a,b\n1,2\n3,\n", "line 3: `b` is empty"),
             ("a,b\n1,2\n3\n", "line: 3"),
             ("a,b\n", "no row"),
         ] {
