@@ -5,7 +5,7 @@ use crate::request_kind::RequestKind;
 use crate::values::{allowed_text, full_name, show_value};
 use crepitus_protocol::host::Refusal;
 use crepitus_protocol::link::DriveRefusal;
-use crepitus_protocol::parameters::{id, with_id};
+use crepitus_protocol::parameters::{Kind, Parameter, id, with_id};
 use crepitus_protocol::{DeviceSettings, ValueError, Values};
 use std::fmt;
 
@@ -133,12 +133,25 @@ impl Refused {
             ValueError::StaticAboveLimit => {
                 write!(
                     f,
-                    "{} is above {}: lower the first or raise the second",
+                    "{} is above {}: lower the first",
                     self.setting(id::STATIC_TORQUE),
                     self.setting(id::TORQUE_LIMIT)
                 )?;
-                if let Some(limit) = with_id(id::TORQUE_LIMIT) {
-                    write!(f, ", which is {}", allowed_text(limit))?;
+                let value = self.values.and_then(|values| values.get(id::STATIC_TORQUE));
+                match (with_id(id::TORQUE_LIMIT), value) {
+                    (
+                        Some(Parameter {
+                            kind: Kind::Number(limit),
+                            ..
+                        }),
+                        Some(value),
+                    ) if value > limit.max => {
+                        write!(f, "; the second is {} {} at most", limit.max, limit.unit)?;
+                    }
+                    (Some(limit), _) => {
+                        write!(f, " or raise the second, which is {}", allowed_text(limit))?;
+                    }
+                    (None, _) => f.write_str(" or raise the second")?,
                 }
             }
             ValueError::NarrowRange => write!(

@@ -14,6 +14,9 @@ use std::time::{Duration, Instant};
 /// USB has no baud rate, and a pty neither; a number has to be given.
 const BAUD_RATE: u32 = 115_200;
 
+/// What the system says of a character device that is no terminal, such as `/dev/null`.
+const NO_TERMINAL: &str = "Not a typewriter";
+
 /// Timeout after which a port without progress is stalled.
 const SEND_PATIENCE: Duration = Duration::from_millis(250);
 
@@ -184,7 +187,9 @@ fn why(path: &str, error: &serialport::Error) -> TransportError {
         ErrorKind::NoDevice | ErrorKind::Io(io::ErrorKind::NotFound) => {
             TransportError::NotFound { port }
         }
-        _ if !holder::is_terminal(path) => TransportError::NotSerial { port },
+        _ if !holder::is_terminal(path) || error.description == NO_TERMINAL => {
+            TransportError::NotSerial { port }
+        }
         _ => TransportError::Open {
             port,
             detail: error.to_string(),

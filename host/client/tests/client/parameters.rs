@@ -94,8 +94,8 @@ fn invalid_values_are_rejected_with_the_valid_ones() {
         (
             &[(id::STATIC_TORQUE, 5.0)],
             ValueError::StaticAboveLimit,
-            "crepitus.static_torque_nm = 5 is above limits.torque_nm = 4.5: lower the first or \
-             raise the second, which is between 0 and 4.5 N·m; nothing was changed",
+            "crepitus.static_torque_nm = 5 is above limits.torque_nm = 4.5: lower the first; the \
+             second is 4.5 N·m at most; nothing was changed",
         ),
     ] {
         let failed = client.set(changes).unwrap_err();
