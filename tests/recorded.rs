@@ -143,10 +143,17 @@ fn exports_hold_every_sample_and_replace_nothing() {
     let home = tempfile::tempdir().unwrap();
     let file = recorded(home.path(), "a");
     let before = fs::read(&file).unwrap();
+    let samples = rows(&recording(&file)).len();
     for format in ["csv", "mcap", "parquet"] {
         let arguments = ["export", text(&file), "--format", format];
         let output = run(&arguments);
         assert!(output.status.success(), "{}", stderr(&output));
+        // What is in the new file.
+        let said = match format {
+            "mcap" => format!(": {} rows, one a millisecond\n", samples.div_ceil(20)),
+            _ => format!(": {samples} samples\n"),
+        };
+        assert!(stdout(&output).ends_with(&said), "{}", stdout(&output));
         let again = run(&arguments);
         assert_eq!(again.status.code(), Some(2));
         assert!(stderr(&again).contains("already exists"));

@@ -54,8 +54,9 @@ use tempfile::NamedTempFile;
 
 /// Writes a recording to an empty file, durably; tells the number of rows so
 /// far, and ends with [`Interrupted`](std::io::ErrorKind::Interrupted) if that
-/// returns false.
-pub type Write = fn(&Recording, &std::fs::File, &mut dyn FnMut(u64) -> bool) -> std::io::Result<()>;
+/// returns false. Returns the number of rows of the new file.
+pub type Write =
+    fn(&Recording, &std::fs::File, &mut dyn FnMut(u64) -> bool) -> std::io::Result<u64>;
 
 /// The writer of Parquet files; none if this was built without the feature
 /// `parquet`.

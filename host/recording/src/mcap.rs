@@ -318,7 +318,8 @@ impl<'f> Messages<'f> {
 }
 
 /// Writes a recording to an empty file, durably. `progress` gets the number of
-/// rows so far; if it returns false, writing ends with [`ErrorKind::Interrupted`].
+/// rows so far; if it returns false, writing ends with [`ErrorKind::Interrupted`]. Returns the
+/// number of rows of the new file, each of a millisecond.
 ///
 /// # Errors
 /// Of either file.
@@ -326,7 +327,7 @@ pub(crate) fn write(
     recording: &Recording,
     file: &File,
     progress: &mut dyn FnMut(u64) -> bool,
-) -> io::Result<()> {
+) -> io::Result<u64> {
     let mut messages = Messages::new(file, recording)?;
     messages.log(0.0, INFO, &recording.metadata().title)?;
     for warning in recording.warnings() {
@@ -363,7 +364,8 @@ pub(crate) fn write(
     }
     messages.bin(&mut bin)?;
     messages.writer.finish().map_err(other)?;
-    file.sync_all()
+    file.sync_all()?;
+    Ok(messages.knee.count.into())
 }
 
 fn io_error(error: ReadError) -> io::Error {

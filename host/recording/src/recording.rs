@@ -211,6 +211,7 @@ impl Recording {
         if !self.is_complete {
             let cut = match self.cut_bytes {
                 0 => String::new(),
+                1 => " Its last byte is no whole sample.".to_owned(),
                 bytes => format!(" Its last {bytes} bytes are no whole sample."),
             };
             warnings.push(format!(

@@ -166,13 +166,13 @@ pub(crate) enum Clash {
     Replace,
 }
 
-/// Writes a recording into a file, which appears whole or not at all.
+/// Writes a recording into a file, which appears whole or not at all. Returns its number of rows.
 pub(crate) fn written(
     recording: &Recording,
     out: &Path,
     clash: Clash,
     write: Write,
-) -> Result<(), Failure> {
+) -> Result<u64, Failure> {
     if clash == Clash::Refuse && out.exists() {
         return Err(exists(out));
     }
@@ -183,7 +183,7 @@ pub(crate) fn written(
     let file = new_file(out).map_err(failed)?;
     let mut progress = Progress::of_reading();
     let expected = recording.books().totals.received.max(1);
-    write(recording, file.as_file(), &mut |rows| {
+    let rows = write(recording, file.as_file(), &mut |rows| {
         #[expect(clippy::cast_precision_loss, reason = "a share")]
         progress.reached(rows as f64 / expected as f64);
         !interrupt::requested()
@@ -200,7 +200,8 @@ pub(crate) fn written(
         })?,
     };
     // The name, too, outlives a power cut.
-    crepitus_recording::sync_folder_of(out).map_err(failed)
+    crepitus_recording::sync_folder_of(out).map_err(failed)?;
+    Ok(rows)
 }
 
 fn exists(out: &Path) -> Failure {

@@ -43,7 +43,7 @@ pub(crate) fn write(
     recording: &Recording,
     file: &File,
     progress: &mut dyn FnMut(u64) -> bool,
-) -> io::Result<()> {
+) -> io::Result<u64> {
     let about = About {
         metadata: recording.metadata().clone(),
         is_complete: recording.is_complete(),
@@ -65,7 +65,9 @@ pub(crate) fn write(
     if !rows.is_empty() {
         writer.group(&mut rows)?;
     }
-    writer.finish(file)
+    let rows = writer.rows;
+    writer.finish(file)?;
+    Ok(rows)
 }
 
 fn io_error(error: ReadError) -> io::Error {

@@ -92,12 +92,18 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let out =
         (arguments.out.clone()).unwrap_or_else(|| beside(&arguments.file, format.extension()));
     interrupt::listen();
-    written(&recording, &out, Clash::Refuse, writer)?;
+    let rows = written(&recording, &out, Clash::Refuse, writer)?;
     let totals = recording.books().totals;
     if as_json {
-        return print_json(&json!({ "out": out, "telemetry": totals, "warnings": warnings }));
+        return print_json(
+            &json!({ "out": out, "rows": rows, "telemetry": totals, "warnings": warnings }),
+        );
     }
-    print(&format!("{}: {} samples\n", out.display(), totals.received))
+    let what = match format {
+        ExportFormat::Mcap => "rows, one a millisecond",
+        ExportFormat::Csv | ExportFormat::Parquet => "samples",
+    };
+    print(&format!("{}: {rows} {what}\n", out.display()))
 }
 
 /// Rows between two updates of the progress.
@@ -107,19 +113,22 @@ fn csv(
     recording: &Recording,
     file: &File,
     progress: &mut dyn FnMut(u64) -> bool,
-) -> io::Result<()> {
+) -> io::Result<u64> {
     let mut out = BufWriter::with_capacity(1 << 16, file);
     let header: Vec<_> = COLUMNS.iter().map(|(name, _)| *name).collect();
     let mut line = header.join(",") + "\n";
+    let mut rows = 0;
     for (count, row) in (0_u64..).zip(recording.rows().map_err(io::Error::other)?) {
         row.map_err(io::Error::other)?.append_to(&mut line);
         out.write_all(line.as_bytes())?;
         line.clear();
+        rows = count + 1;
         if count.is_multiple_of(PROGRESS_ROWS) && !progress(count) {
             return Err(ErrorKind::Interrupted.into());
         }
     }
     out.write_all(line.as_bytes())?;
     out.flush()?;
-    file.sync_all()
+    file.sync_all()?;
+    Ok(rows)
 }
