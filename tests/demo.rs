@@ -3,8 +3,9 @@
 mod support;
 
 use serde_json::Value;
+use std::fs;
 use std::time::{Duration, Instant};
-use support::{check_books, names, recording, rows, run, stderr, stdout, summary};
+use support::{check_books, names, recording, refuses, rows, run, stderr, stdout, summary};
 
 #[test]
 fn the_demo_records_and_reports_every_sample() {
@@ -68,4 +69,46 @@ fn the_demo_may_be_run_again_and_does_the_same() {
         rows(&recording(&out.join("recording.parquet")))
     };
     assert!(record() == record(), "the same program, the same samples");
+}
+
+#[test]
+fn the_demo_replaces_nothing_that_is_not_its_own() {
+    let home = tempfile::tempdir().unwrap();
+    let out = home.path().to_str().unwrap();
+    let own = home.path().join("recording.parquet");
+    let file = own.to_str().unwrap();
+    let made = run(&["record", file, "--device", "sim", "--for", "100ms"]);
+    assert!(made.status.success(), "{}", stderr(&made));
+    let before = fs::read(&own).unwrap();
+    refuses(&["demo", "--out", out], 2, "is not a demo's recording");
+    fs::write(home.path().join("summary.json"), r#"{"scene_as_run": ""}"#).unwrap();
+    refuses(&["demo", "--out", out], 2, "holds a run");
+    assert_eq!(fs::read(&own).unwrap(), before);
+    assert_eq!(names(home.path()), ["recording.parquet", "summary.json"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupted_demo_leaves_nothing() {
+    use support::served::{ended, signal, until};
+    let home = tempfile::tempdir().unwrap();
+    let out = home.path().join("demo");
+    let mut child = support::crepitus()
+        .args(["demo", "--json", "--out", out.to_str().unwrap()])
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let is_recorded = || {
+        let parts = fs::read_dir(home.path()).unwrap().flatten();
+        parts
+            .map(|part| part.path().join("files/recording.parquet"))
+            .any(|file| support::length(&file) > support::HALF_A_SECOND)
+    };
+    until("the demo records", is_recorded);
+    signal(&child, "-INT");
+    assert_eq!(ended(&mut child).code(), Some(1));
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(stderr(&output), "");
+    assert_eq!(names(home.path()), Vec::<String>::new());
 }

@@ -3,13 +3,15 @@
 
 use super::report;
 use crate::failure::{Failure, print, print_json};
-use crate::following::{Arming, Follower, follow};
+use crate::following::{Arming, End, Follower, follow};
+use crate::interrupt;
 use crate::line::{Line, failure};
 use crate::overlay::Overlay;
 use crate::pictures::Pictures;
 use crate::progress::Progress;
 use crate::recorded::{Recorded, extension};
 use crate::reported::Reported;
+use crate::results;
 use crate::wav::Wav;
 use clap::Args;
 use crepitus_client::{Begin, Client, RequestKind};
@@ -17,7 +19,7 @@ use crepitus_connection::Simulated;
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};
-use crepitus_recording::{Damage, RecordingSummary};
+use crepitus_recording::{Damage, Recording, RecordingSummary};
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, preset};
 use serde_json::json;
@@ -65,8 +67,13 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("out/demo"));
-    let file = prepared(&out)?;
     let scene = shipped::scene(Path::new(SCENE), &Overrides::default())?;
+    interrupt::listen();
+    let folder = results::folder(&out)?;
+    let name = Path::new("recording").with_extension(extension());
+    let place = out.join(&name);
+    refuse_another(&place, &scene.title)?;
+    let file = folder.path_of(&name);
     let duration = Duration::from_secs_f64(scene.duration_s);
     let device = Simulated::of(&scene).map_err(Failure::input)?;
     let narration = Narration { is_silent: as_json };
@@ -96,40 +103,45 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         progress: Progress::new(scene.duration_s),
         made: Vec::new(),
     };
-    follow(
+    let end = follow(
         &mut client,
         Some(duration),
         Arming::armed(true),
         &mut examination,
     )?;
     wait_until_disarmed(&mut client)?;
+    if end == End::Requested {
+        return Err(Failure::interrupted());
+    }
     let Examination {
         recording, made, ..
     } = examination;
     recording.finish()?;
     narration.step("examination", &examination_text(&client, &made))?;
 
-    let recording =
-        crepitus_recording::Recording::open(&file, Damage::Refuse).map_err(Failure::input)?;
+    let recording = Recording::open(&file, Damage::Refuse).map_err(Failure::input)?;
     let extras = report::Extras {
         pictures: &arguments.pictures,
         overlay: &Overlay::default(),
         wav: &Wav::default(),
     };
-    let reported = report::write(&recording, &out, &extras)?;
-    done(&reported, &out, &file, &client, begun.elapsed(), as_json)
+    let reported = report::write_into(folder, &recording, &out, &extras)?;
+    done(&reported, &out, &place, &client, begun.elapsed(), as_json)
 }
 
-/// Creates the folder and removes an earlier recording.
-fn prepared(out: &Path) -> Result<PathBuf, Failure> {
-    fs::create_dir_all(out).map_err(|e| Failure::at(out, "cannot be created", &e))?;
-    let file = out.join("recording").with_extension(extension());
-    match fs::remove_file(&file) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-            Err(Failure::at(&file, "cannot be replaced", &e))
-        }
-        _ => Ok(file),
+/// The recording of an earlier demo is replaced; no other.
+fn refuse_another(file: &Path, title: &str) -> Result<(), Failure> {
+    if fs::symlink_metadata(file).is_err() {
+        return Ok(());
     }
+    let earlier = Recording::open(file, Damage::Salvage);
+    if earlier.is_ok_and(|recording| recording.metadata().title == title) {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{} is not a demo's recording and would be replaced: name another folder with --out",
+        file.display()
+    )))
 }
 
 /// Waits until the drive reports that it has disarmed.

@@ -19,6 +19,7 @@ use crepitus_recording::{
     Analysis, ArmingPushes, Damage, History, Recording, RecordingSummary, seconds,
 };
 use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
+use crepitus_scene::output::Folder;
 use crepitus_scene::trace::{Column, ColumnKind};
 use effects::Effects;
 use std::path::{Path, PathBuf};
@@ -55,7 +56,8 @@ const PROGRESS_ROWS: u64 = 1 << 14;
 Examples:
   crepitus report monday.parquet
   crepitus report monday.parquet --out monday-report --pictures
-  crepitus report monday.parquet --overlay bench.csv --overlay-columns t_s=time,torque_nm=T
+  crepitus report monday.parquet --overlay bench.csv \\
+      --overlay-columns t_s=time,torque_nm=T
   crepitus report monday.parquet --wav monday.wav
   crepitus report damaged --salvage
 
@@ -122,12 +124,21 @@ pub(super) fn write(
     out: &Path,
     extras: &Extras<'_>,
 ) -> Result<Reported<RecordingSummary>, Failure> {
+    write_into(results::folder(out)?, recording, out, extras)
+}
+
+/// The same by way of a folder that is prepared, with what it has already.
+pub(super) fn write_into(
+    folder: Folder,
+    recording: &Recording,
+    out: &Path,
+    extras: &Extras<'_>,
+) -> Result<Reported<RecordingSummary>, Failure> {
     let parameters = recording.parameters();
     let effects = Effects::of(parameters);
     let columns = effects.columns();
     let measured = extras.overlay.read(&columns)?;
     let mut listener = extras.wav.listener(&columns, TICK_S)?;
-    let folder = results::folder(out)?;
     let expected = recording.books().totals.received;
     let setup = Setup {
         columns: &columns,
