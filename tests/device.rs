@@ -235,3 +235,113 @@ fn a_recording_is_reported() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("not a recording"));
 }
+
+/// The leg of this scene leaves the range of motion, and the drive turns off.
+const FAULTS: [&str; 7] = [
+    "--device",
+    "sim",
+    "--scene",
+    "high-speed",
+    "--arm",
+    "--zero",
+    "--json",
+];
+
+#[test]
+fn a_recording_that_a_fault_ends_is_named() {
+    let home = tempfile::tempdir().unwrap();
+    let file = home.path().join("try");
+    let mut arguments = vec!["record", file.to_str().unwrap()];
+    arguments.extend(FAULTS);
+    let output = run(&arguments);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let said: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(said["file"].as_str(), file.to_str());
+    assert_eq!(said["error"]["exit_code"], 1);
+    let received = check_books(&recording(&file)).received;
+    assert_eq!(said["telemetry"]["received"], received);
+    let message = said["error"]["message"].as_str().unwrap();
+    for part in [
+        "fault 23",
+        &format!("holds {received} samples"),
+        "crepitus report",
+    ] {
+        assert!(message.contains(part), "{message}");
+    }
+}
+
+#[test]
+fn a_scene_is_only_that_of_a_simulated_device() {
+    let home = tempfile::tempdir().unwrap();
+    for device in [&[][..], &["--device", "knee"], &["--device", "/dev/null"]] {
+        let output = support::crepitus()
+            .args(["info", "--scene", "everything"])
+            .args(device)
+            .env("XDG_RUNTIME_DIR", home.path())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{device:?}");
+        assert!(stderr(&output).contains("--scene everything: only a simulated"));
+    }
+}
+
+#[test]
+fn what_would_count_for_nothing_is_refused() {
+    let home = tempfile::tempdir().unwrap();
+    let file = home.path().join("none");
+    let file = file.to_str().unwrap();
+    let twice = [
+        "crepitus.static_torque_nm=0.5",
+        "crepitus.static_torque_nm=0.6",
+    ];
+    for (arguments, part) in [
+        (&["params", "set", twice[0], twice[1]][..], "is set twice"),
+        (
+            &["record", file, "--for", "0s"],
+            "--for: expected a time above 0",
+        ),
+        (
+            &["stream", "--rate", "1e3"],
+            "expected a whole number from 1 to 20000",
+        ),
+    ] {
+        let output = sim(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(part), "{}", stderr(&output));
+    }
+    assert_eq!(support::names(home.path()), Vec::<String>::new());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_device_that_is_no_terminal_is_no_port() {
+    support::refuses(
+        &["info", "--device", "/dev/null"],
+        2,
+        "it is no serial port",
+    );
+}
+
+/// Without a terminal no key can disarm.
+#[test]
+fn arm_names_what_disarms() {
+    let output = support::crepitus()
+        .args(["arm", "--device", "sim", "--zero", "--for", "100ms"])
+        .stdin(std::process::Stdio::null())
+        .output()
+        .unwrap();
+    assert_eq!(stderr(&output), "armed: Ctrl-C disarms\n");
+}
+
+/// The text of an error must not be lost with the reader's disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_error_that_stdout_cannot_take_goes_to_stderr() {
+    let output = support::crepitus()
+        .args(["info", "--json", "--device", "/dev/null"])
+        .stdout(fs::File::create("/dev/full").unwrap())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("/dev/null"), "{}", stderr(&output));
+}

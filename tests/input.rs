@@ -137,3 +137,67 @@ fn permission_denied_and_invalid_values_are_bad_input() {
         assert!(printed.contains(name), "{printed}");
     }
 }
+
+/// Twice an input is as bad as a long one.
+#[test]
+fn no_input_is_repeated_at_length_piece_by_piece() {
+    let long = "x".repeat(5_000);
+    let value = format!("limits.torque_nm={long}");
+    let points = tempfile::NamedTempFile::new().unwrap();
+    let header = "pa ".repeat(400);
+    std::fs::write(points.path(), format!("{header},b\n1,2\n")).unwrap();
+    let points = points.path().to_str().unwrap();
+    for arguments in [
+        &["run", "fig6-ideal-cycle", "--step", &long][..],
+        &["run", "fig6-ideal-cycle", "--set", &format!("a.b.c={long}")],
+        &["params", "set", &value, "--device", "sim"],
+        &["serve-sim", "--usbip", &format!("--usbip={long}")],
+        &["serve-sim", "--name", &long],
+        &["sweep", "low-speed", "--points", points],
+    ] {
+        let printed = refused(&run(arguments));
+        let repeated = printed.matches("xx").count() * 2 + printed.matches("pa ").count() * 3;
+        assert!(repeated <= 200, "{repeated}: {printed}");
+    }
+}
+
+#[test]
+fn no_input_forges_a_line() {
+    let forged = "1\nerror: forged";
+    for arguments in [
+        &["run", "fig6-ideal-cycle", "--step", forged][..],
+        &["run", "fig6-ideal-cycle", "--set", &format!("a={forged}")],
+        &["run", forged],
+        &["stability", "--case", forged],
+        &[
+            "params",
+            "set",
+            &format!("limits.torque_nm={forged}"),
+            "--device",
+            "sim",
+        ],
+        &["stream", "--rate", forged],
+        &[forged],
+    ] {
+        let printed = refused(&run(arguments));
+        let lines = printed
+            .lines()
+            .filter(|line| line.starts_with("error: "))
+            .count();
+        assert_eq!(lines, 1, "{arguments:?}: {printed}");
+    }
+}
+
+/// What a rule says must be said as one: the value broke it.
+#[test]
+fn a_rule_is_not_told_as_a_fact() {
+    let printed = refused(&run(&[
+        "params",
+        "set",
+        "texture.seed=1.5",
+        "texture.render=on",
+        "--device",
+        "sim",
+    ]));
+    assert!(printed.contains("seed must be a whole number"), "{printed}");
+}

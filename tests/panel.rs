@@ -622,6 +622,27 @@ fn what_cannot_start_says_why() {
         ),
         (vec!["panel", "--device", "nobody"], "unknown device"),
         (
+            vec!["panel", "--replay", "Cargo.toml"],
+            "not a recording",
+        ),
+        (
+            vec!["panel", "--device", "sim", "--sessions", "Cargo.toml"],
+            "--sessions: cannot store anything there",
+        ),
+        (
+            vec!["panel", "--device", "sim", "--sessions", "/dev/full"],
+            "--sessions: cannot store anything there",
+        ),
+        #[cfg(target_os = "linux")]
+        (
+            vec!["panel", "--device", "sim", "--sessions", "/sys/kernel"],
+            "--sessions: cannot store anything there",
+        ),
+        (
+            vec!["panel", "--device", "sim", "--lan", "192.0.2.1"],
+            "this computer has no such address",
+        ),
+        (
             vec!["panel", "--replay", "a", "--device", "sim"],
             "cannot be used with",
         ),

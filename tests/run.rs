@@ -373,3 +373,85 @@ fn pictures_are_svg_or_pdf() {
         stderr(&refused)
     );
 }
+
+/// Told before the run, and as bad input.
+#[test]
+fn places_where_nothing_can_be_are_bad_input() {
+    let home = tempfile::tempdir().unwrap();
+    let at = |name: &str| home.path().join(name).to_str().unwrap().to_owned();
+    let folder = at("folder.wav");
+    fs::create_dir(&folder).unwrap();
+    let (long, missing, out) = (at(&"x".repeat(300)), at("no/such.wav"), at("out"));
+    for arguments in [
+        &["--out", &long][..],
+        &["--out", "/dev/null/x"],
+        &["--out", &out, "--wav", &missing],
+        &["--out", &out, "--wav", &folder],
+    ] {
+        // A run that took its time would not be ended by an error of its place.
+        let mut all = vec!["run", "fig6-ideal-cycle", "--set", "duration_s=1e5"];
+        all.extend(arguments);
+        let output = run(&all);
+        let text = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
+        assert!(!text.contains(".crepitus-"), "{text}");
+    }
+    assert_eq!(names(home.path()), ["folder.wav"]);
+}
+
+#[test]
+fn no_run_goes_beside_its_folder() {
+    let home = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(support::repository().join("scenes/low-speed.toml")).unwrap();
+    fs::write(home.path().join("...toml"), text).unwrap();
+    let output = support::crepitus()
+        .args(["run", "...toml"])
+        .current_dir(home.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("name one with --out"));
+    assert_eq!(names(home.path()), ["...toml"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_without_an_end_is_no_scene() {
+    support::refuses(&["run", "/dev/zero"], 2, "is longer than 16 MB");
+}
+
+#[test]
+fn a_broken_summary_is_named_itself() {
+    let home = tempfile::tempdir().unwrap();
+    let file = home.path().join("summary.json");
+    let file = file.to_str().unwrap();
+    fs::write(
+        file,
+        r#"{"scene": "scenes/low-speed.toml", "scene_as_run": "version = 1"}"#,
+    )
+    .unwrap();
+    support::refuses(
+        &["run", file],
+        2,
+        &format!("{file}: `title`: in `scene_as_run`"),
+    );
+}
+
+/// A seat on a leg without mass has no frequency to warn of.
+#[test]
+fn a_shell_needs_a_limb() {
+    let shell = [
+        "--set",
+        "effects.shell.mass_kg=0.25",
+        "--set",
+        "duration_s=1",
+    ];
+    let mut arguments = vec!["run", "slow-examination"];
+    arguments.extend(shell);
+    support::refuses(&arguments, 2, "needs [effects.limb]");
+}
+
+#[test]
+fn as_many_draws_as_nobody_waits_for_are_refused() {
+    support::refuses(&["vibration", "--draws", "99999999999"], 2, "0..=1000000");
+}

@@ -418,7 +418,37 @@ fn what_is_wrong_is_said_before_anything_runs() {
         ),
         (
             &["low-speed", "--vary", "duration_s=1,2", "--threads", "0"],
-            "threads",
+            "expected at least 1, got 0",
+        ),
+        (
+            &["low-speed", "--vary", "duration_s=1,2", "--seed", "7"],
+            "--seed: only --latin and --sobol",
+        ),
+        (
+            &[
+                "low-speed",
+                "--vary",
+                "duration_s=1,2",
+                "--set",
+                "duration_s=1",
+            ],
+            "--set duration_s: it is varied, too",
+        ),
+        (
+            &[
+                "low-speed",
+                "--vary",
+                "duration_s=1,2",
+                "--set",
+                "title=a",
+                "--set",
+                "title=b",
+            ],
+            "`title` is set twice",
+        ),
+        (
+            &["....toml", "--vary", "duration_s=1,2"],
+            "no such scene ships",
         ),
         (&["--merge", "."], "sweep.json is missing"),
         (&["low-speed", "--points", "none.csv"], "none.csv"),
@@ -466,5 +496,29 @@ fn sampled_points_fill_their_ranges() {
                 .iter()
                 .all(|s| s == "3")
         );
+    }
+}
+
+#[test]
+fn more_threads_than_there_can_be_are_as_many_as_there_are_points() {
+    let home = tempfile::tempdir().unwrap();
+    let arguments = [
+        "low-speed",
+        "--vary",
+        "duration_s=0.01,0.02",
+        "--threads",
+        "99999999",
+    ];
+    done(home.path(), &arguments);
+}
+
+#[test]
+fn a_part_that_is_missing_is_told_even_if_the_table_is_there() {
+    let home = tempfile::tempdir().unwrap();
+    let home = home.path();
+    done(home, &["low-speed", "--vary", "duration_s=0.01,0.02"]);
+    let long = "x".repeat(300);
+    for missing in ["nowhere", &long] {
+        refused(home, &["--merge", "out/sweep-low-speed", missing], 2);
     }
 }

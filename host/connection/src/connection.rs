@@ -95,6 +95,11 @@ fn serial(port: &str, program: &str) -> Result<Connection, OpenError> {
         .map_err(OpenError::Transport)
 }
 
+/// Whether a name is that of a device in this process.
+pub fn is_in_this_process(name: &str) -> bool {
+    [SIMULATED, EMULATED].contains(&name)
+}
+
 /// Whether a name is a port, and not the name of a simulated device: a path, or `COM` with a
 /// number.
 pub fn is_port(name: &str) -> bool {

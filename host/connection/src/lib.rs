@@ -31,7 +31,7 @@ pub mod parameters;
 mod simulated;
 
 pub use clock::Clock;
-pub use connection::{Connection, is_port};
+pub use connection::{Connection, is_in_this_process, is_port};
 pub use input::is_input;
 pub use open_error::OpenError;
 pub use simulated::Simulated;

@@ -47,6 +47,14 @@ pub enum Source {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PanelError {
+    /// This computer does not have the address.
+    #[error(
+        "--lan {address}: this computer has no such address: `ip address` lists those that it has"
+    )]
+    Address {
+        /// Address.
+        address: IpAddr,
+    },
     /// The port cannot be used.
     #[error(
         "port {port} of {address} cannot be used: {source}; choose another one with --port (0 is any free one)"
@@ -97,10 +105,13 @@ impl Panel {
         let system = |error: &dyn std::fmt::Display| PanelError::System(error.to_string());
         let tokens = Tokens::draw().map_err(|e| system(&e))?;
         let address = settings.lan.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST));
-        let in_use = |source| PanelError::Port {
-            address,
-            port: settings.port,
-            source,
+        let in_use = |source: std::io::Error| match source.kind() {
+            std::io::ErrorKind::AddrNotAvailable => PanelError::Address { address },
+            _ => PanelError::Port {
+                address,
+                port: settings.port,
+                source,
+            },
         };
         let listener =
             TcpListener::bind(SocketAddr::new(address, settings.port)).map_err(in_use)?;

@@ -4,6 +4,7 @@
 use crate::failure::Failure;
 use crate::verbs::Verb;
 use clap::{Args, Parser};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -20,9 +21,11 @@ use std::time::Duration;
 )]
 #[command(after_help = "\
 Start with:
-  crepitus demo                             the whole device, simulated; then open out/demo/report.html
-  crepitus scenes                           what there is to see
-  crepitus run scenes/slow-examination.toml simulate it, then open out/slow-examination/report.html")]
+  crepitus demo                   # the whole device, simulated
+  crepitus scenes                 # what there is to see
+  crepitus run slow-examination   # simulate it
+
+The reports are out/demo/report.html and out/slow-examination/report.html.")]
 pub(crate) struct Cli {
     /// Print JSON instead of text.
     #[arg(long, global = true)]
@@ -41,14 +44,10 @@ pub(crate) struct DeviceArguments {
     #[arg(long, value_name = "DEVICE", global = true)]
     pub(crate) device: Option<String>,
 
-    /// With --device sim or emulated: the scene that sets its leg and parameters.
-    #[arg(
-        long,
-        value_name = "SCENE",
-        global = true,
-        default_value = "passive-examination"
-    )]
-    pub(crate) scene: PathBuf,
+    /// With --device sim or emulated: the scene that sets its leg and parameters
+    /// [default: passive-examination].
+    #[arg(long, value_name = "SCENE", global = true)]
+    pub(crate) scene: Option<PathBuf>,
 }
 
 /// Parses `PATH=VALUE`, and whatever else has a name and a value.
@@ -59,6 +58,25 @@ pub(crate) fn key_and_value(text: &str) -> Result<(String, String), String> {
         }
         _ => Err("expected a name, `=` and a value, without spaces between them".to_owned()),
     }
+}
+
+/// Refuses names that stand twice: only the last would count, silently.
+pub(crate) fn once<'a>(
+    option: &str,
+    names: impl IntoIterator<Item = &'a str>,
+) -> Result<(), Failure> {
+    let mut seen = BTreeSet::new();
+    match names.into_iter().find(|name| !seen.insert(*name)) {
+        None => Ok(()),
+        Some(name) => Err(Failure::Input(format!(
+            "{option}: `{name}` is set twice: give it one value"
+        ))),
+    }
+}
+
+/// Refuses a key that `--set` has twice.
+pub(crate) fn set_once(set: &[(String, String)]) -> Result<(), Failure> {
+    once("--set", set.iter().map(|(path, _)| path.as_str()))
 }
 
 /// Parses a duration: 500ms, 30s, 5m, 1h.
@@ -117,6 +135,87 @@ mod tests {
             let help = verb.render_long_help().to_string();
             assert!(help.contains("Example"), "{}", verb.get_name());
         }
+    }
+
+    /// A broken one does less than it says when it is pasted: without `--device sim`, say.
+    #[test]
+    fn no_example_is_broken_by_the_width_of_the_terminal() {
+        let mut cli = Cli::command();
+        cli.build();
+        let commands = cli.get_subcommands().chain([&cli]);
+        for (command, width) in commands.flat_map(|command| [(command, 80), (command, 100)]) {
+            let source = command.get_after_help().map(ToString::to_string);
+            let help = command.clone().term_width(width).render_long_help();
+            let help = help.to_string();
+            let mut lines = help.lines();
+            let examples = source.iter().flat_map(|text| text.lines());
+            for example in examples.filter(|line| line.starts_with("  ")) {
+                assert!(example.chars().count() <= 78, "{example}");
+                assert!(
+                    lines.any(|line| line == example),
+                    "{width}: {example}\n{help}"
+                );
+            }
+        }
+    }
+
+    /// The commands in a text, without comments and what is behind a redirection.
+    fn commands(text: &str) -> Vec<String> {
+        let joined = text.replace("\\\n", " ");
+        let lines = joined.lines().map(str::trim);
+        let lines = lines.filter(|line| line.starts_with("crepitus "));
+        // `…` stands for what the reader knows, `[` and `|` for what may be.
+        let whole = lines.filter(|line| !line.contains(['…', '[', '|']) && !line.contains("SCENE"));
+        let ends = [" # ", "  # ", " > ", " >", " &&"];
+        let cut = |line: &str| {
+            let end = ends.iter().filter_map(|end| line.find(end)).min();
+            line.get(..end.unwrap_or(line.len()))
+                .unwrap_or_default()
+                .to_owned()
+        };
+        whole.map(cut).collect()
+    }
+
+    /// The words of a command, as a shell splits them.
+    fn words(command: &str) -> Vec<String> {
+        let mut words = vec![String::new()];
+        let mut quote = None;
+        for c in command.chars() {
+            match (quote, c) {
+                (None, '"' | '\'') => quote = Some(c),
+                (Some(q), _) if c == q => quote = None,
+                (None, ' ') => words.push(String::new()),
+                _ => words.last_mut().expect("a word").push(c),
+            }
+        }
+        words.retain(|word| !word.is_empty());
+        words
+    }
+
+    #[test]
+    fn every_command_that_is_shown_is_one() {
+        let mut shown = Vec::new();
+        for command in Cli::command().get_subcommands() {
+            let text = command.get_after_help().map(ToString::to_string);
+            shown.extend(commands(&text.unwrap_or_default()));
+        }
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let docs = std::fs::read_dir(root.join("docs")).expect("documents");
+        let files = docs.map(|entry| entry.expect("an entry").path());
+        for file in files.chain([root.join("README.md")]) {
+            if file.extension().is_some_and(|extension| extension == "md") {
+                let text = std::fs::read_to_string(file).expect("a text");
+                // Blocks of code: every second part.
+                let blocks = text.split("\n```").skip(1).step_by(2);
+                shown.extend(blocks.flat_map(commands));
+            }
+        }
+        assert!(shown.len() > 150, "{}", shown.len());
+        let wrong: Vec<_> = (shown.iter())
+            .filter_map(|command| Cli::try_parse_from(words(command)).err())
+            .map(|error| error.to_string())
+            .collect();
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     }
 
     #[test]

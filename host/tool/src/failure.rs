@@ -2,7 +2,7 @@
 
 use crate::safe_text::{message, visible};
 use crepitus_scene::SceneError;
-use serde_json::json;
+use serde_json::{Map, Value, json};
 use std::fmt::Display;
 use std::io;
 use std::path::Path;
@@ -15,6 +15,8 @@ pub(crate) enum Failure {
     Input(String),
     /// The work failed: exit code 1.
     Work(String),
+    /// The work failed, and something of it is kept: exit code 1; what is kept, as JSON.
+    Kept(String, Map<String, Value>),
     /// The work was done and its result is negative: no message, exit code 1.
     Negative,
     /// The reader of stdout has closed it: no message, exit code 1.
@@ -38,13 +40,20 @@ impl Failure {
         Self::Work("interrupted: nothing was written".to_owned())
     }
 
-    /// The work failed at `path`; a path without permission is bad input.
+    /// The work failed at `path`; one that cannot be a file or a folder is bad input.
     pub(crate) fn at(path: &Path, doing: &str, error: &io::Error) -> Self {
-        let message = format!("{}: {doing}: {error}", path.display());
+        let text = error.to_string();
+        // Of a temporary file, whose name is not the user's.
+        let text = text.split(" at path \"").next().unwrap_or(&text);
+        let message = format!("{}: {doing}: {text}", path.display());
         match error.kind() {
             io::ErrorKind::PermissionDenied
             | io::ErrorKind::ReadOnlyFilesystem
-            | io::ErrorKind::NotADirectory => Self::Input(message),
+            | io::ErrorKind::NotFound
+            | io::ErrorKind::AlreadyExists
+            | io::ErrorKind::IsADirectory
+            | io::ErrorKind::NotADirectory
+            | io::ErrorKind::InvalidFilename => Self::Input(message),
             _ => Self::Work(message),
         }
     }
@@ -52,7 +61,7 @@ impl Failure {
     /// The message.
     pub(crate) fn into_text(self) -> String {
         match self {
-            Self::Input(text) | Self::Work(text) => text,
+            Self::Input(text) | Self::Work(text) | Self::Kept(text, _) => text,
             Self::Negative | Self::NoReader => String::new(),
         }
     }
@@ -61,13 +70,18 @@ impl Failure {
     pub(crate) fn report(&self, json: bool) -> ExitCode {
         let (text, code) = match self {
             Self::Input(text) => (message(text), 2),
-            Self::Work(text) => (message(text), 1),
+            Self::Work(text) | Self::Kept(text, _) => (message(text), 1),
             Self::Negative | Self::NoReader => return ExitCode::from(1),
         };
-        if json {
-            // If stdout is closed, the exit code still tells.
-            let _ = print_json(&json!({ "error": { "message": text, "exit_code": code } }));
-        } else {
+        let printed = json && {
+            let mut told = json!({ "error": { "message": text, "exit_code": code } });
+            if let (Self::Kept(_, kept), Some(told)) = (self, told.as_object_mut()) {
+                told.extend(kept.clone());
+            }
+            // A reader that has closed stdout wants no more; a full disk must not hide the error.
+            matches!(print_json(&told), Ok(()) | Err(Self::NoReader))
+        };
+        if !printed {
             eprintln!("error: {text}");
         }
         ExitCode::from(code)

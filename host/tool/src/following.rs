@@ -10,12 +10,16 @@ use crate::line::{Line, failure, failure_with};
 use clap::Args;
 use crepitus_client::{Begin, Client, Event};
 use crepitus_connection::device_text;
+use crepitus_protocol::State;
 use crepitus_protocol::telemetry::Block;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::Duration;
 
 /// Timeout of a poll for events; Ctrl-C is checked between polls.
 const POLL_TIMEOUT: Duration = Duration::from_millis(20);
+
+/// The longest that the drive takes to tell that it has disarmed.
+const DISARM_TIMEOUT: Duration = Duration::from_millis(100);
 
 /// Timeout of reconnection.
 const RECONNECT_TIMEOUT: Duration = Duration::from_secs(10);
@@ -86,7 +90,27 @@ pub(crate) fn follow(
     if arm {
         client.arm().map_err(|error| failure_with(client, error))?;
     }
-    disarming(client, |client| run(client, time, arm, follower))
+    let end = disarming(client, |client| run(client, time, arm, follower))?;
+    if arm && client.is_connected() {
+        refuse_fault(client)?;
+    }
+    Ok(end)
+}
+
+/// A fault of the last moment before the end was not seen as a change of the state.
+fn refuse_fault(client: &mut Client<Line>) -> Result<(), Failure> {
+    let until = client.now() + DISARM_TIMEOUT;
+    loop {
+        let status = client.status().map_err(failure)?;
+        let faults = device_text::faults(&status);
+        if !faults.is_empty() {
+            return Err(Failure::Work(faults.join("\n")));
+        }
+        // The drive's own word comes some milliseconds after the answer of the other controller.
+        if status.state == State::Disarmed || client.now() >= until {
+            return Ok(());
+        }
+    }
 }
 
 /// Does what may arm, and disarms behind it: also after an error or a panic.
@@ -201,7 +225,6 @@ mod tests {
     use super::*;
     use crepitus_client::Transport;
     use crepitus_connection::Simulated;
-    use crepitus_protocol::State;
     use crepitus_scene::Overrides;
     use crepitus_scene::shipped;
     use std::path::Path;
@@ -221,8 +244,11 @@ mod tests {
     }
 
     fn client() -> Client<Line> {
-        let scene = shipped::scene(Path::new("passive-examination"), &Overrides::default())
-            .expect("a scene");
+        client_of("passive-examination")
+    }
+
+    fn client_of(scene: &str) -> Client<Line> {
+        let scene = shipped::scene(Path::new(scene), &Overrides::default()).expect("a scene");
         let device = Simulated::of(&scene).expect("a device");
         Client::connect(Line::Simulated(Box::new(device))).expect("a connection")
     }
@@ -261,6 +287,47 @@ mod tests {
             behind.pauses
         );
         assert!(behind.blocks > 100, "{} blocks", behind.blocks);
+    }
+
+    /// Does nothing.
+    struct Waits;
+
+    impl Follower for Waits {
+        fn block(&mut self, _: &mut Client<Line>, _: &Block) -> Result<(), Failure> {
+            Ok(())
+        }
+
+        fn pause(&mut self, _: &mut Client<Line>) -> Result<bool, Failure> {
+            Ok(false)
+        }
+    }
+
+    #[test]
+    fn a_fault_just_before_the_end_is_told() {
+        let armed = |time| {
+            // Its leg leaves the range of motion.
+            let mut client = client_of("high-speed");
+            let begun = client.now();
+            let end = follow(&mut client, time, Arming::armed(true), &mut Waits);
+            let took = client.now().saturating_sub(begun);
+            client.transport_mut().wait(Duration::from_millis(20));
+            let faults = device_text::faults(&client.status().expect("the status"));
+            (end, took, faults)
+        };
+        let (end, seen, _) = armed(None);
+        assert!(matches!(end, Err(Failure::Work(_))), "{end:?}");
+        let mut told = 0;
+        for ms in 0..40 {
+            let time = seen.saturating_sub(Duration::from_millis(5 * ms));
+            let (end, _, faults) = armed(Some(time));
+            assert_eq!(
+                end.is_err(),
+                !faults.is_empty(),
+                "{ms}: {end:?}, {faults:?}"
+            );
+            told += u32::from(end.is_err());
+        }
+        assert!((1..40).contains(&told), "{told}");
     }
 
     #[test]

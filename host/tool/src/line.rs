@@ -4,16 +4,31 @@ use crate::cli::DeviceArguments;
 use crate::failure::Failure;
 use crepitus_client::{Client, Error, Management, RequestKind};
 pub(crate) use crepitus_connection::Connection as Line;
-use crepitus_connection::is_input;
+use crepitus_connection::{is_in_this_process, is_input};
 use crepitus_protocol::Session;
 use crepitus_protocol::host::Refusal;
 use crepitus_scene::{Overrides, shipped};
 use crepitus_sharing::Program;
+use std::path::Path;
+
+/// The scene of a device in this process.
+const SCENE: &str = "passive-examination";
 
 /// Opens the connection to the device that the arguments name.
 pub(crate) fn open(arguments: &DeviceArguments) -> Result<Line, Failure> {
-    let scene = || shipped::scene(&arguments.scene, &Overrides::default());
-    Line::open(arguments.device.as_deref(), &command_line(), scene).map_err(Failure::input)
+    let device = arguments.device.as_deref();
+    if let Some(scene) = &arguments.scene
+        && !device.is_some_and(is_in_this_process)
+    {
+        return Err(Failure::Input(format!(
+            "--scene {}: only a simulated device of this command has a scene: give --device sim or --device \
+             emulated, or leave it out",
+            scene.display()
+        )));
+    }
+    let scene = arguments.scene.as_deref().unwrap_or(Path::new(SCENE));
+    let scene = || shipped::scene(scene, &Overrides::default());
+    Line::open(device, &command_line(), scene).map_err(Failure::input)
 }
 
 /// The same; a device in this process is not faster than real time.

@@ -6,6 +6,7 @@ use crepitus_scene::Scene;
 use crepitus_scene::output::Folder;
 use serde::Serialize;
 use serde_json::Value;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -25,6 +26,21 @@ pub(crate) fn folder(out: &Path) -> Result<Folder, Failure> {
         )));
     }
     folder_of_run(out)
+}
+
+/// The folder in `out` that is named after a scene's file.
+pub(crate) fn named_after(scene: &Path, before: &str, after: &str) -> Result<PathBuf, Failure> {
+    let stem = scene.file_stem().unwrap_or_default();
+    if [".", ".."].map(OsStr::new).contains(&stem) {
+        return Err(Failure::Input(format!(
+            "{}: no folder can have that name: name one with --out",
+            scene.display()
+        )));
+    }
+    let mut name = OsString::from(before);
+    name.push(stem);
+    name.push(after);
+    Ok(Path::new("out").join(name))
 }
 
 /// The same for a run.

@@ -3,11 +3,12 @@
 
 use std::borrow::Cow;
 
-/// The longest word or quotation that is repeated whole, characters.
-const LONGEST: usize = 200;
+/// The longest word or quotation that is repeated whole, and what is kept of a longer one,
+/// characters.
+const LONGEST: (usize, usize) = (80, 60);
 
-/// Characters kept of a longer one.
-const KEPT: usize = 150;
+/// The same of paths and of commands to type, of which a part is of no use.
+const LONGEST_PATH: (usize, usize) = (200, 150);
 
 /// Escapes control characters, except newlines and tabs, and characters that
 /// change the direction of text.
@@ -43,8 +44,9 @@ fn brief(text: &str, arguments: impl Iterator<Item = String>) -> String {
     for argument in arguments {
         for part in argument.split('=').chain([argument.as_str()]) {
             let part = part.trim();
-            if part.chars().count() > LONGEST {
-                text = text.replace(part, &cut(part));
+            let short = one_line(&cut(part));
+            if short != part {
+                text = text.replace(part, &short);
             }
         }
     }
@@ -63,18 +65,31 @@ fn brief(text: &str, arguments: impl Iterator<Item = String>) -> String {
                 rest.split_at(rest.find(stop).unwrap_or(rest.len()))
             }
         };
-        brief.push_str(&cut(part));
+        let is_quoted = part.len() > 1 && matches!(first, '"' | '`') && part.ends_with(first);
+        let part = cut(part);
+        if is_quoted {
+            brief.push_str(&one_line(&part));
+        } else {
+            brief.push_str(&part);
+        }
         rest = more;
     }
     visible(&brief).into_owned()
 }
 
+/// What was typed, or is quoted, is no line of its own.
+fn one_line(text: &str) -> String {
+    text.replace('\n', "\\n")
+}
+
 fn cut(part: &str) -> Cow<'_, str> {
     let count = part.chars().count();
-    if count <= LONGEST {
+    let is_long = part.contains(['/', '\\']) || part.starts_with("`crepitus ");
+    let (longest, kept) = if is_long { LONGEST_PATH } else { LONGEST };
+    if count <= longest {
         return Cow::Borrowed(part);
     }
-    let kept: String = part.chars().take(KEPT).collect();
+    let kept: String = part.chars().take(kept).collect();
     Cow::Owned(format!("{kept}… ({count} characters)"))
 }
 
@@ -111,6 +126,17 @@ mod tests {
             text.len() < 250 && text.ends_with("cannot be read"),
             "{text}"
         );
+        // What was typed forges no line.
+        let forged = "1\nerror: forged";
+        for text in [format!("a, --step {forged}: no"), format!("{forged:}: no")] {
+            let text = brief(&text, [forged.to_owned()].into_iter());
+            assert!(text.ends_with("1\\nerror: forged: no"), "{text}");
+        }
+        let quoted = brief(&format!("unknown name \"{forged}\""), std::iter::empty());
+        assert!(!quoted.contains('\n'), "{quoted}");
+        // A path is of no use without its end.
+        let path = "some-folder/".repeat(15);
+        assert_eq!(message(&path), path);
         // An open quotation is one up to the end.
         assert!(message(&format!("\"{words}")).len() < 250);
         let short = "scene.toml, line 4: `device`: \"reference\" has no step";

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, warn};
 use clap::{Args, ValueEnum};
+use crepitus_recording::new_file;
 use crepitus_scene::trace::Column;
 use crepitus_sound::{Sound, SoundError, SoundSummary};
 use std::path::{Path, PathBuf};
@@ -80,6 +81,14 @@ impl Wav {
                     .to_owned(),
             }));
         };
+        // Before the work, so that a place where no file can be is told early.
+        if file.is_dir() {
+            return Err(Failure::Input(format!(
+                "--wav {}: this is a folder: name a file",
+                file.display()
+            )));
+        }
+        new_file(file).map_err(|e| Failure::at(file, "cannot be written", &e))?;
         let sound = Sound::new(step_s).map_err(|e| failed(file, &e))?;
         Ok(Some(Listener {
             sound,

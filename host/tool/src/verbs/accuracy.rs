@@ -32,7 +32,8 @@ Examples:
   crepitus accuracy --scene slow-examination --out /tmp/accuracy
   crepitus accuracy --need torque=1e-2,interval=5e-4 --rate 20000
   crepitus accuracy --need torque=1e-2 --target
-  crepitus accuracy --need frequency=1e-6 --convention physical --precision f64
+  crepitus accuracy --need frequency=1e-6 --convention physical \\
+      --precision f64
 
 Every solver, in f32 and f64 and at steps from 1 ms to 2 µs, is compared with the reference \
 on four constant speeds and a hand-like sine, and timed on this machine in CPU time; so is every other symptom, \

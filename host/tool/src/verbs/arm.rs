@@ -10,6 +10,7 @@ use crate::line::{Line, connect};
 use clap::Args;
 use crepitus_client::Client;
 use crepitus_protocol::telemetry::Block;
+use std::io::{IsTerminal, stdin};
 use std::time::Duration;
 
 /// Turn torque on while this command runs.
@@ -56,7 +57,12 @@ impl Follower for UntilKey {
             } else {
                 "not armed"
             };
-            eprintln!("{is_armed}: any key disarms");
+            let how = if stdin().is_terminal() {
+                "any key"
+            } else {
+                "Ctrl-C"
+            };
+            eprintln!("{is_armed}: {how} disarms");
             Keys::listen()
         });
         Ok(keys.is_active() && keys.pressed())

@@ -36,12 +36,15 @@ use weight::WeightArguments;
 #[command(after_help = "\
 Examples:
   crepitus calibrate
-  crepitus calibrate --weight-kg 0.6 --lever-m 0.25 --out out/calibration --apply
+  crepitus calibrate --weight-kg 0.6 --lever-m 0.25 --out out/calibration \\
+      --apply
   crepitus calibrate --steps torque-constant --weight-kg 0.6 --lever-m 0.25
-  crepitus calibrate --steps zero,polarity,torque-constant --weight-kg 0.6 --lever-m 0.25 --yes --device sim \\
-      --scene weight-on-the-arm
-  crepitus calibrate --steps friction --weight-kg 2.44 --lever-m 0.2477 --weight-inertia-kg-m2 0.2202 --yes --device sim \\
-      --scene weight-in-the-brace
+  crepitus calibrate --device sim --scene weight-on-the-arm \\
+      --steps zero,polarity,torque-constant --weight-kg 0.6 --lever-m 0.25 \\
+      --yes
+  crepitus calibrate --device sim --scene weight-in-the-brace \\
+      --steps friction --weight-kg 2.44 --lever-m 0.2477 \\
+      --weight-inertia-kg-m2 0.2202 --yes
 
 Clamp the upper half of the brace in a vice, its axis level, nobody in it. Each step says what to do, and goes on by Enter; s skips \
 it, Ctrl-C ends the program with the torque off.

@@ -9,7 +9,8 @@ use clap_complete::Shell;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
-  crepitus completions bash > ~/.local/share/bash-completion/completions/crepitus")]
+  crepitus completions bash \\
+      > ~/.local/share/bash-completion/completions/crepitus")]
 pub(crate) struct Arguments {
     /// The shell.
     shell: Shell,

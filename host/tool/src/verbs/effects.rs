@@ -8,7 +8,7 @@ mod smallest;
 mod summary;
 mod table;
 
-use crate::cli::key_and_value;
+use crate::cli::{key_and_value, set_once};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::pictures::Pictures;
 use crate::results;
@@ -30,7 +30,8 @@ Examples:
   crepitus effects
   crepitus effects slow-examination
   crepitus effects my-scene.toml --tolerance torque=5e-3
-  crepitus effects my-scene.toml --tolerance torque=0.02,events=0.01 --set duration_s=2
+  crepitus effects my-scene.toml --tolerance torque=0.02,events=0.01 \\
+      --set duration_s=2
 
 Without a SCENE all effects are listed, with their parameters. With one, each of its effects is \
 left out in turn and each absent one added: how much that changes the torque at the hand (RMS, \
@@ -38,8 +39,8 @@ peak, three bands of frequency, number of events), and what it costs (time of a 
 
 A TOLERANCE is a list of limits: torque (rms difference of the torque at the hand, N·m), peak \
 (largest difference, N·m), events (relative difference of the number of events). The answer is \
-the smallest set of the scene's effects that stays within all of them; all sets are tried, the \
-small ones first.")]
+the smallest set of the scene's effects that stays within all of them; sets are tried \
+from small to large until one does.")]
 pub(crate) struct Arguments {
     /// Scene file, or name of a scene that ships.
     scene: Option<PathBuf>,
@@ -75,7 +76,10 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         };
     };
     let plan = plan(arguments, path)?;
-    let out = arguments.out.clone().unwrap_or_else(|| out(&plan.scene));
+    let out = match &arguments.out {
+        Some(out) => out.clone(),
+        None => results::named_after(&plan.scene.file, "", "-effects")?,
+    };
     let folder = results::folder(&out)?;
     let study = study_effects(&plan, &mut Watch::new()).map_err(|e| failed(&plan.scene, e))?;
     let summary = Summary::new(&study);
@@ -109,6 +113,7 @@ fn plan(arguments: &Arguments, path: &Path) -> Result<Plan, Failure> {
         .map(str::parse::<Tolerance>)
         .transpose()
         .map_err(|e| Failure::Input(format!("--tolerance: {e}")))?;
+    set_once(&arguments.set)?;
     let overrides = Overrides {
         set: arguments.set.clone(),
         ..Overrides::default()
@@ -118,13 +123,6 @@ fn plan(arguments: &Arguments, path: &Path) -> Result<Plan, Failure> {
         Some(refused) => Err(refuse(&scene, refused)),
         None => Ok(Plan { scene, tolerance }),
     }
-}
-
-/// `out/<scene>-effects`.
-fn out(scene: &Scene) -> PathBuf {
-    let mut name = scene.file.file_stem().unwrap_or_default().to_owned();
-    name.push("-effects");
-    Path::new("out").join(name)
 }
 
 /// A refusal in the form of a scene's own errors.

@@ -22,9 +22,13 @@ use std::path::PathBuf;
 Examples:
   crepitus record swing --for 15s
   crepitus record armed --for 15s --arm
-  crepitus identify swing armed --weight-kg 2.5 --lever-m 0.25 --weight-inertia-kg-m2 0.23 --out out/brace
-  crepitus identify swing --weight-kg 2.5 --lever-m 0.25 --scene-out brace.toml
-  crepitus record swing --device sim --scene weight-in-the-brace --for 8s
+  crepitus identify swing armed --weight-kg 2.5 --lever-m 0.25 \\
+      --weight-inertia-kg-m2 0.23 --out out/brace
+  crepitus identify swing --weight-kg 2.5 --lever-m 0.25 \\
+      --scene-out brace.toml
+  crepitus record simulated --device sim --scene weight-in-the-brace --for 8s
+  crepitus identify simulated --weight-kg 2.44 --lever-m 0.2477 \\
+      --weight-inertia-kg-m2 0.2202
 
 What to record: clamp the upper half of the brace with its axis level, strap a bar with a weight into the cuffs \
 of the lower half, as if it were the leg, and choose it so heavy that it swings four times or more. Begin to record, lift \

@@ -27,11 +27,14 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  crepitus identify-actuator --moving-mass-g 60 --zero --out out/actuator --apply
+  crepitus identify-actuator --moving-mass-g 60 --zero --out out/actuator \\
+      --apply
   crepitus identify-actuator --added-mass-g 30
-  crepitus identify-actuator --device sim --scene actuator-in-a-vice --zero --moving-mass-g 52
+  crepitus identify-actuator --device sim --scene actuator-in-a-vice --zero \\
+      --moving-mass-g 52
   crepitus identify-actuator --from bench.csv --moving-mass-g 60
-  crepitus identify-actuator --from bare.csv --from-added heavier.csv --added-mass-g 30
+  crepitus identify-actuator --from bare.csv --from-added heavier.csv \\
+      --added-mass-g 30
 
 Clamp the ring in a vice first, by its outer rim, with the mass free to move: a ring that moves adds a \
 resonance of its own, or, lying loose, replaces the mass m by m·M/(m + M), which no current tells.

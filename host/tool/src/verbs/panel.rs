@@ -10,20 +10,22 @@ use crate::line::{Line, failure, open_in_real_time};
 use clap::Args;
 use crepitus_client::Client;
 use crepitus_panel::{Links, Panel, Settings, Source};
+use crepitus_recording::{Damage, Recording, new_file};
 use program::ThisProgram;
 use serde_json::json;
+use std::fs;
 use std::net::IpAddr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Open the trainer's panel: a page to choose a knee, see what the hand does, and hold lessons.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  crepitus panel                                      the device that is attached
-  crepitus panel --device sim                         without a device
-  crepitus panel --sessions my-lessons                lessons and recordings are stored in that folder
+  crepitus panel                                # the device that is attached
+  crepitus panel --device sim                   # without a device
+  crepitus panel --sessions my-lessons          # lessons are stored there
   crepitus panel --replay monday.parquet --replay tuesday.parquet
-  crepitus panel --lan 192.168.1.20 --no-open         for other computers, with TLS
+  crepitus panel --lan 192.168.1.20 --no-open   # for others, with TLS
 
 The page is served to this computer alone, under a link with a secret; a second link is for looking on. \
 One page has control and may arm; every page may stop. If the controlling page is closed or does not \
@@ -65,6 +67,10 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
                 file.display()
             )));
         }
+        Recording::open(file, Damage::Salvage).map_err(Failure::input)?;
+    }
+    if let Some(folder) = &arguments.sessions {
+        probe(folder)?;
     }
     let settings = Settings {
         port: arguments.port,
@@ -91,6 +97,16 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let panel = Panel::open(settings, &source).map_err(Failure::input)?;
     let _opened = announce(&panel, arguments, as_json)?;
     panel.keep(client, &ThisProgram).map_err(failure)
+}
+
+/// Checks that files can be stored in a folder; a lesson would find out too late.
+fn probe(folder: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(folder)
+        .and_then(|()| new_file(&folder.join("probe")).map(drop))
+        .map_err(|e| {
+            let text = Failure::at(folder, "--sessions: cannot store anything there", &e);
+            Failure::Input(text.into_text() + ": name another folder")
+        })
 }
 
 /// Prints the links and opens the first.

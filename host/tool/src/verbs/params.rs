@@ -4,7 +4,7 @@ mod changes;
 mod save_preset;
 mod source;
 
-use crate::cli::{DeviceArguments, key_and_value};
+use crate::cli::{DeviceArguments, key_and_value, once};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::line::{Line, connect, failure, failure_with};
 use clap::{Args, Subcommand, ValueHint};
@@ -25,7 +25,8 @@ use std::path::PathBuf;
 Examples:
   crepitus params list
   crepitus params get crepitus.static_torque_nm
-  crepitus params set crepitus.static_torque_nm=0.5 crepitus.kinetic_torque_nm=0.25
+  crepitus params set crepitus.static_torque_nm=0.5 \\
+      crepitus.kinetic_torque_nm=0.25
   crepitus params apply mas-2-catch
   crepitus params apply contracture-mild --add
   crepitus params apply scenes/bone-shaping.toml
@@ -191,6 +192,7 @@ fn set(
     values: &[(String, String)],
     as_json: bool,
 ) -> Result<(), Failure> {
+    once("params set", values.iter().map(|(name, _)| name.as_str()))?;
     let changes = values
         .iter()
         .map(|(name, text)| {

@@ -6,9 +6,11 @@ use crate::following::{Arming, follow};
 use crate::interrupt;
 use crate::line::connect;
 use crate::recorded::{Recorded, print_ended};
+use crate::shell;
 use clap::Args;
+use crepitus_recording::Totals;
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Record a device's samples to a file.
@@ -44,9 +46,28 @@ pub(crate) struct Arguments {
     device: DeviceArguments,
 }
 
+/// A fault or a lost device ends a recording, and what came before is in the file.
+fn kept(failure: Failure, file: &Path, totals: &Totals) -> Failure {
+    let Failure::Work(text) = failure else {
+        return failure;
+    };
+    let text = format!(
+        "{text}; {} holds {} samples: `crepitus report {}`",
+        file.display(),
+        totals.received,
+        shell::word(file)
+    );
+    let fields = [("file", json!(file)), ("telemetry", json!(totals))];
+    let fields = fields.map(|(name, value)| (name.to_owned(), value));
+    Failure::Kept(text, fields.into_iter().collect())
+}
+
 /// Records.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     interrupt::listen();
+    if arguments.for_s.is_some_and(|time| time.is_zero()) {
+        return Err(Failure::input("--for: expected a time above 0, got 0"));
+    }
     let file = &arguments.file;
     let mut client = connect(&arguments.device)?;
     let mut recorded = Recorded::begin(&mut client, file, &arguments.title)?;
@@ -59,7 +80,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     client.end_telemetry();
     // Finishes the file also after an error.
     let totals = recorded.finish()?;
-    end?;
+    if let Err(failure) = end {
+        return Err(match totals {
+            Some(totals) => kept(failure, file, &totals),
+            None => failure,
+        });
+    }
     match totals {
         None if as_json => print_json(&json!({ "file": null })),
         None => print("no sample came: nothing was recorded\n"),

@@ -4,7 +4,7 @@ mod plant;
 mod tables;
 mod watch;
 
-use crate::cli::key_and_value;
+use crate::cli::{key_and_value, set_once};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
 use crate::overlay::{self, Overlay};
@@ -27,10 +27,12 @@ use watch::{Watch, WatchError};
 Examples:
   crepitus run scenes/fig6-ideal-cycle.toml
   crepitus run slow-examination --out /tmp/exam --solver exact --step 1e-3
-  crepitus run high-speed --set effects.crepitus.preset=fine --set duration_s=2
+  crepitus run high-speed --set effects.crepitus.preset=fine \\
+      --set duration_s=2
   crepitus run passive-examination --as-device
   crepitus run fig8-5-hand --wav knee.wav --wav-of hand
-  crepitus run fig8-5-hand --overlay bench.csv --overlay-columns t_s=time,hand_torque_nm=M
+  crepitus run fig8-5-hand --overlay bench.csv \\
+      --overlay-columns t_s=time,hand_torque_nm=M
   crepitus run out/high-speed/summary.json
 
 SCENE is a file, the name of a scene that ships, or the summary.json of a run, which is repeated bit \
@@ -90,7 +92,10 @@ pub(crate) struct Arguments {
 /// Runs a scene.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let scene = read(arguments)?;
-    let wanted = out_folder(arguments, &scene);
+    let wanted = match &arguments.out {
+        Some(out) => out.clone(),
+        None => results::named_after(&scene.file, "", "")?,
+    };
     let out = if arguments.force {
         wanted.clone()
     } else {
@@ -132,6 +137,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 
 /// The scene that the arguments name, with their overrides.
 fn read(arguments: &Arguments) -> Result<Scene, Failure> {
+    set_once(&arguments.set)?;
     let overrides = Overrides {
         solver: arguments.solver.clone(),
         step: arguments.step.clone(),
@@ -140,14 +146,6 @@ fn read(arguments: &Arguments) -> Result<Scene, Failure> {
         set: arguments.set.clone(),
     };
     Ok(shipped::scene(&arguments.scene, &overrides)?)
-}
-
-/// `--out`, or `out/<scene>`.
-fn out_folder(arguments: &Arguments, scene: &Scene) -> PathBuf {
-    arguments.out.clone().unwrap_or_else(|| {
-        let name = scene.file.file_stem().unwrap_or_default();
-        Path::new("out").join(name)
-    })
 }
 
 /// The failure of a run, for people.

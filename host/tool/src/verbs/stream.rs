@@ -27,14 +27,15 @@ enum SampleFormat {
 #[command(after_help = "\
 Examples:
   crepitus stream --rate 100
-  crepitus stream --device sim --for 2s --rate 20000 --arm --zero > samples.csv
+  crepitus stream --device sim --for 2s --rate 20000 --arm --zero \\
+      > samples.csv
   crepitus stream --format jsonl --rate 10 | head
 
 On a terminal a status line is shown on stderr. A rate below the drive's 20000 Hz takes every n-th \
 sample, without a filter.")]
 pub(crate) struct Arguments {
     /// Samples a second: 20000 divided by a whole number.
-    #[arg(long, value_name = "HZ", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=20_000))]
+    #[arg(long, value_name = "HZ", default_value_t = 100, value_parser = rate)]
     rate: u32,
 
     /// Output format; --json means jsonl.
@@ -53,6 +54,15 @@ pub(crate) struct Arguments {
 }
 
 /// Streams.
+/// Parses a rate.
+fn rate(text: &str) -> Result<u32, String> {
+    let rate = text
+        .parse()
+        .ok()
+        .filter(|rate| (1..=TICKS_PER_S).contains(rate));
+    rate.ok_or_else(|| format!("expected a whole number from 1 to {TICKS_PER_S}"))
+}
+
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     interrupt::listen();
     let rate = arguments.rate;

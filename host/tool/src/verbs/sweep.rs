@@ -5,9 +5,10 @@ mod merge;
 mod progress;
 mod words;
 
-use crate::cli::key_and_value;
+use crate::cli::{key_and_value, set_once};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
+use crate::results;
 use clap::Args;
 use crepitus_scene::Overrides;
 use crepitus_scene::shipped::Source;
@@ -29,15 +30,17 @@ use std::time::Instant;
 #[command(after_help = "\
 Examples:
   crepitus sweep low-speed --vary effects.crepitus.static_torque_nm=1:4:lin7 \\
-                           --vary effects.crepitus.stiffness_nm_per_rad=20:200:log5
-  crepitus sweep knee-pass-frozen --vary solver.kind=exact,exact-events,rk4 --vary solver.step_s=1e-5:1e-3:log9
-  crepitus sweep everything --latin 1000 --seed 7 --vary effects.cuff.stiffness_nm_per_rad=30:300 \\
-                            --vary effects.limb.body_mass_kg=50:90
+      --vary effects.crepitus.stiffness_nm_per_rad=20:200:log5
+  crepitus sweep knee-pass-frozen --vary solver.kind=exact,exact-events,rk4 \\
+      --vary solver.step_s=1e-5:1e-3:log9
+  crepitus sweep everything --latin 1000 --seed 7 \\
+      --vary effects.cuff.stiffness_nm_per_rad=30:300 \\
+      --vary effects.limb.body_mass_kg=50:90
   crepitus sweep everything --sobol 4096 --vary …
-  crepitus sweep low-speed --points saltelli.csv      points of another program
-  crepitus sweep low-speed --vary … --estimate=1e7    what that would cost
-  crepitus sweep low-speed --vary … --shard 3/16      one of 16 parts, on any computer
-  crepitus sweep --merge out/sweep-low-speed          checks that all parts are there: the table
+  crepitus sweep low-speed --points saltelli.csv     # of another program
+  crepitus sweep low-speed --vary … --estimate=1e7   # what that would cost
+  crepitus sweep low-speed --vary … --shard 3/16     # a part, on any computer
+  crepitus sweep --merge out/sweep-low-speed         # the table of all parts
 
 VALUES: FROM:TO:linN or FROM:TO:logN, N values with both ends; a list A,B,C; for --latin and --sobol \
 FROM:TO, FROM:TO:log or a list. A grid runs every combination, the last --vary is the fastest.
@@ -63,9 +66,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", conflicts_with = "points")]
     sobol: Option<u64>,
 
-    /// Seed of --latin and --sobol.
-    #[arg(long, value_name = "SEED", default_value_t = 0)]
-    seed: u64,
+    /// Seed of --latin and --sobol [default: 0].
+    #[arg(long, value_name = "SEED")]
+    seed: Option<u64>,
 
     /// Instead of --vary: a CSV file with a PATH over each column and a point in each row.
     #[arg(long, value_name = "FILE", conflicts_with = "vary")]
@@ -100,8 +103,8 @@ pub(crate) struct Arguments {
     traces: bool,
 
     /// Threads [default: all cores].
-    #[arg(long, value_name = "N")]
-    threads: Option<NonZero<usize>>,
+    #[arg(long, value_name = "N", value_parser = threads)]
+    threads: Option<usize>,
 
     /// Run up to a thousand of the points, write nothing, and say what the sweep would cost: all
     /// of it, or RUNS runs.
@@ -129,6 +132,15 @@ fn shard(text: &str) -> Result<Shard, String> {
     match parts.and_then(|(i, n)| Some((number(i)?, number(n)?))) {
         Some((i, n)) => Shard::new(i, n),
         None => Err("expected I/N, for example 3/16".to_owned()),
+    }
+}
+
+/// Parses a number of threads.
+fn threads(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) => Err("expected at least 1, got 0".to_owned()),
+        Ok(threads) => Ok(threads),
+        Err(_) => Err("expected a whole number, at least 1".to_owned()),
     }
 }
 
@@ -168,7 +180,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     let scene = arguments.scene.as_deref().unwrap_or(Path::new(""));
     let plan = plan(arguments, scene)?;
-    let threads = arguments.threads.map_or_else(cores, NonZero::get);
+    let threads = arguments.threads.unwrap_or_else(cores);
     interrupt::listen();
     if let Some(extent) = arguments.estimate {
         let runs = match extent {
@@ -177,10 +189,10 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         };
         return estimate::run(&plan, runs, threads, as_json);
     }
-    let out = arguments.out.clone().unwrap_or_else(|| {
-        let name = scene.file_stem().unwrap_or_default().to_string_lossy();
-        Path::new("out").join(format!("sweep-{name}"))
-    });
+    let out = match &arguments.out {
+        Some(out) => out.clone(),
+        None => results::named_after(scene, "sweep-", "")?,
+    };
     let mut store = open(&out, &plan, arguments.force)?;
     if let Some(table) = store.table() {
         return done(&plan, &table, None, as_json);
@@ -214,6 +226,12 @@ fn cores() -> usize {
 }
 
 fn plan(arguments: &Arguments, scene: &Path) -> Result<Plan, Failure> {
+    set_once(&arguments.set)?;
+    if arguments.seed.is_some() && arguments.latin.is_none() && arguments.sobol.is_none() {
+        return Err(Failure::input(
+            "--seed: only --latin and --sobol draw their points: leave it out",
+        ));
+    }
     let overrides = Overrides {
         as_device: arguments.as_device,
         set: arguments.set.clone(),
@@ -223,7 +241,7 @@ fn plan(arguments: &Arguments, scene: &Path) -> Result<Plan, Failure> {
     let sampled = |count| Sampled {
         axes: arguments.vary.clone(),
         count,
-        seed: arguments.seed,
+        seed: arguments.seed.unwrap_or(0),
     };
     let design = match (arguments.latin, arguments.sobol, &arguments.points) {
         (Some(count), _, _) => Design::latin_hypercube(sampled(count)),
@@ -235,6 +253,14 @@ fn plan(arguments: &Arguments, scene: &Path) -> Result<Plan, Failure> {
         _ => Design::grid(arguments.vary.clone()),
     };
     let design = design.map_err(Failure::input)?;
+    let varied = design.paths();
+    if let Some((path, _)) =
+        (arguments.set.iter()).find(|(path, _)| varied.contains(&path.as_str()))
+    {
+        return Err(Failure::Input(format!(
+            "--set {path}: it is varied, too: leave one of the two out"
+        )));
+    }
     Ok(Plan::new(source, overrides, design)?)
 }
 
@@ -281,10 +307,18 @@ fn run_points(
             "interrupted after {ran} of {wanted} runs: the same command goes on from there"
         ))),
         Err(End::Store(e)) => Err(store_failure(e)),
+        Err(End::NoThread(e)) => Err(no_thread(&e)),
         Err(End::Trace(e)) => Err(Failure::Work(format!(
             "a trace cannot be written after {ran} of {wanted} runs: {e}: the same command goes on from there"
         ))),
     }
+}
+
+/// The system gives not even one thread.
+fn no_thread(error: &std::io::Error) -> Failure {
+    Failure::Work(format!(
+        "no thread can be started: {error}: end other programs, or raise this one's limits"
+    ))
 }
 
 /// Makes the table.

@@ -3,12 +3,12 @@
 
 mod table;
 
-use crate::cli::key_and_value;
+use crate::cli::{key_and_value, set_once};
 use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
 use crate::results::{self, footer, report_files};
 use crate::studying::{Interrupted, Watch};
-use clap::Args;
+use clap::{Args, value_parser};
 use crepitus_scene::scene::MotionKind;
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, Scene};
@@ -43,8 +43,8 @@ pub(crate) struct Arguments {
     speeds: Vec<f64>,
 
     /// How often everything is off at once.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    draws: usize,
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(..=MOST_DRAWS))]
+    draws: u32,
 
     /// Folder for summary.json and report.html [default: out/SCENE-vibration].
     #[arg(long, value_name = "DIR")]
@@ -58,6 +58,9 @@ pub(crate) struct Arguments {
     pictures: Pictures,
 }
 
+/// The most draws: a study of days.
+const MOST_DRAWS: i64 = 1_000_000;
+
 /// The way of the joint in a run, rad, and the longest that one takes, s.
 const WAY_RAD: f64 = 1.4;
 const LONGEST_S: f64 = 4.0;
@@ -66,7 +69,7 @@ const LONGEST_S: f64 = 4.0;
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let plan = Plan {
         scenes: scenes(arguments)?,
-        draws: arguments.draws,
+        draws: usize::try_from(arguments.draws).unwrap_or(usize::MAX),
     };
     let out = arguments.out.clone().unwrap_or_else(|| out(&plan));
     let folder = results::folder(&out)?;
@@ -88,6 +91,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 
 /// The scene at each speed, over the same way.
 fn scenes(arguments: &Arguments) -> Result<Vec<Scene>, Failure> {
+    set_once(&arguments.set)?;
     let read = |set: &[(String, String)]| -> Result<Scene, Failure> {
         let overrides = Overrides {
             set: [&arguments.set[..], set].concat(),

@@ -43,7 +43,12 @@ pub(super) struct Number {
 impl Number {
     /// Value, interval and unit.
     pub(super) fn text(&self) -> String {
-        let Self { value, unit, .. } = self;
+        let Self { value, .. } = self;
+        // A share has none.
+        let unit = match self.unit {
+            "1" => String::new(),
+            unit => format!(" {unit}"),
+        };
         match self.half_width {
             Some(half_width) => {
                 let (value, half) = Estimate {
@@ -51,9 +56,9 @@ impl Number {
                     half_width,
                 }
                 .rounded();
-                format!("{value} ± {half} {unit}")
+                format!("{value} ± {half}{unit}")
             }
-            None => format!("{value:.2} {unit}"),
+            None => format!("{value:.2}{unit}"),
         }
     }
 }

@@ -14,9 +14,18 @@ use std::time::Duration;
 /// Ticks between two exchanges with the port.
 const EXCHANGE_TICKS: u64 = 20;
 
+/// The longest name; that of the file of its lock is longer.
+const MOST_NAME_BYTES: usize = 200;
+
 /// Rejects a name that cannot be one of a device.
 pub(super) fn check(name: &str) -> Result<(), Failure> {
     let is_plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    if name.len() > MOST_NAME_BYTES {
+        return Err(Failure::Input(format!(
+            "--name {name:?}: expected at most {MOST_NAME_BYTES} characters, got {}",
+            name.chars().count()
+        )));
+    }
     let is_reserved = ["", "sim", "emulated", "shared"].contains(&name) || is_port(name);
     if is_reserved || !name.chars().all(is_plain) {
         return Err(Failure::Input(format!(

@@ -1,10 +1,10 @@
 //! `crepitus sweep … --estimate`: what a sweep would cost, measured on some of it.
 
-use super::words;
+use super::{no_thread, words};
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crate::progress;
-use crepitus_sweep::{Format, Parts, Plan, Receiver, Row, run_all, table, totals};
+use crepitus_sweep::{Ended, Format, Parts, Plan, Receiver, Row, run_all, table, totals};
 use serde_json::json;
 use std::io;
 use std::iter::once;
@@ -113,33 +113,28 @@ impl Rows {
     }
 }
 
-/// Why it ended early: by Ctrl-C only.
-struct Interrupted;
-
-impl From<io::Error> for Interrupted {
-    fn from(_: io::Error) -> Self {
-        Self
+fn failure(ended: Ended) -> Failure {
+    match ended {
+        Ended::NoThread(error) => no_thread(&error),
+        // No run has a file of its own.
+        Ended::Stopped | Ended::Failed(_) => Failure::interrupted(),
     }
 }
 
-fn failure(_: Interrupted) -> Failure {
-    Failure::interrupted()
-}
-
 impl Receiver for Rows {
-    type Error = Interrupted;
+    type Error = Ended;
 
-    fn row(&mut self, row: Row) -> Result<(), Interrupted> {
+    fn row(&mut self, row: Row) -> Result<(), Ended> {
         self.ended.push(row);
         Ok(())
     }
 
     #[expect(clippy::cast_precision_loss, reason = "a share for people")]
-    fn poll(&mut self) -> Result<(), Interrupted> {
+    fn poll(&mut self) -> Result<(), Ended> {
         self.bar
             .reached(self.ended.len() as f64 / self.wanted.max(1) as f64);
         if interrupt::requested() {
-            return Err(Interrupted);
+            return Err(Ended::Stopped);
         }
         Ok(())
     }

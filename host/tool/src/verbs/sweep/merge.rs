@@ -13,12 +13,15 @@ pub(super) fn run(folders: &[PathBuf], format: Format, as_json: bool) -> Result<
         return Err(Failure::Input("--merge: name a folder".to_owned()));
     };
     let mut store = Store::open(first).map_err(store_failure)?;
+    let others = others.iter().map(|other| Store::open(other));
+    let others = others
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(store_failure)?;
     let written = if let Some(written) = store.table() {
         written
     } else {
-        for other in others {
-            let other = Store::open(other).map_err(store_failure)?;
-            store.take_parts_of(&other).map_err(store_failure)?;
+        for other in &others {
+            store.take_parts_of(other).map_err(store_failure)?;
         }
         table(&mut store, format, first)?
     };

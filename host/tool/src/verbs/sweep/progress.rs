@@ -2,7 +2,7 @@
 
 use crate::interrupt;
 use crate::progress;
-use crepitus_sweep::{Receiver, Row, Store, StoreError};
+use crepitus_sweep::{Ended, Receiver, Row, Store, StoreError};
 use std::io;
 
 /// Why a sweep ends early.
@@ -14,11 +14,17 @@ pub(super) enum End {
     Store(StoreError),
     /// A trace cannot be written.
     Trace(io::Error),
+    /// There is no thread.
+    NoThread(io::Error),
 }
 
-impl From<io::Error> for End {
-    fn from(error: io::Error) -> Self {
-        Self::Trace(error)
+impl From<Ended> for End {
+    fn from(ended: Ended) -> Self {
+        match ended {
+            Ended::Stopped => Self::Interrupted,
+            Ended::Failed(error) => Self::Trace(error),
+            Ended::NoThread(error) => Self::NoThread(error),
+        }
     }
 }
 
