@@ -621,10 +621,7 @@ fn what_cannot_start_says_why() {
             "there is no such recording",
         ),
         (vec!["panel", "--device", "nobody"], "unknown device"),
-        (
-            vec!["panel", "--replay", "Cargo.toml"],
-            "not a recording",
-        ),
+        (vec!["panel", "--replay", "Cargo.toml"], "not a recording"),
         (
             vec!["panel", "--device", "sim", "--sessions", "Cargo.toml"],
             "--sessions: cannot store anything there",

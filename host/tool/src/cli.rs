@@ -164,8 +164,13 @@ mod tests {
         let joined = text.replace("\\\n", " ");
         let lines = joined.lines().map(str::trim);
         let lines = lines.filter(|line| line.starts_with("crepitus "));
-        // `…` stands for what the reader knows, `[` and `|` for what may be.
-        let whole = lines.filter(|line| !line.contains(['…', '[', '|']) && !line.contains("SCENE"));
+        // `…` stands for what the reader knows, `[` and `|` for what may be; two commands in a line
+        // are those of two terminals.
+        let is_whole = |line: &&str| {
+            let is_table = line.starts_with("crepitus  ") || line.matches("crepitus ").count() > 1;
+            !is_table && !line.contains(['…', '[', '|']) && !line.contains("SCENE")
+        };
+        let whole = lines.filter(is_whole);
         let ends = [" # ", "  # ", " > ", " >", " &&"];
         let cut = |line: &str| {
             let end = ends.iter().filter_map(|end| line.find(end)).min();
