@@ -66,11 +66,6 @@ impl Mismatch {
     pub fn tool(&self) -> (Version, u64) {
         (TOOL_VERSION, schema::HASH)
     }
-
-    /// Version of a tool that is compatible with comms.
-    pub fn tool_needed(&self) -> Version {
-        Version(self.0.comms.version)
-    }
 }
 
 impl fmt::Display for Mismatch {

@@ -14,9 +14,6 @@ pub type Need = limits::Limits<Criterion>;
 /// One limit.
 pub type Limit = limits::Limit<Criterion>;
 
-/// Why a text is not a valid need.
-pub type NeedError = limits::LimitsError<Criterion>;
-
 /// An error that can be limited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]

@@ -9,9 +9,6 @@
 
 use std::f64::consts::{SQRT_2, TAU};
 
-/// Uncertainty of the threshold, dB.
-pub const UNCERTAIN_DB: f64 = 10.0;
-
 /// Least displacement that is felt, m peak.
 const DISPLACEMENT_M: f64 = 0.03e-6;
 
