@@ -45,6 +45,15 @@ pub(crate) fn section(
     }
 }
 
+/// How many of each: 1 break, 2 sticks.
+pub(crate) fn counts(of: &[(u64, &str)]) -> String {
+    let counted = of.iter().map(|(count, name)| match count {
+        1 => format!("1 {name}"),
+        _ => format!("{count} {name}s"),
+    });
+    counted.collect::<Vec<_>>().join(", ")
+}
+
 /// A torque.
 pub(crate) fn nm(x: f64) -> String {
     format!("{:.5} N·m", rounded(x))
@@ -58,4 +67,15 @@ pub(crate) fn millijoule(x: f64) -> String {
 /// Rounded to five digits behind the point; a zero has no sign.
 fn rounded(x: f64) -> f64 {
     (x * 1e5).round() / 1e5 + 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_is_not_many() {
+        let text = counts(&[(0, "break"), (1, "stick"), (2, "reverse")]);
+        assert_eq!(text, "0 breaks, 1 stick, 2 reverses");
+    }
 }

@@ -11,7 +11,7 @@ use crate::progress::Progress;
 use crate::recorded::beside;
 use crate::reported::Reported;
 use crate::results::{self, footer, report_files};
-use crate::sections::torque_levels;
+use crate::sections::{counts, torque_levels};
 use crate::wav::Wav;
 use clap::Args;
 use crepitus_protocol::TICK_S;
@@ -260,13 +260,12 @@ fn in_brief(s: &RecordingSummary) -> String {
         )
     });
     format!(
-        "{}\n{warnings}  {:.3} s, {:.3} s of it armed, with {} breaks and {} sticks\n{torque}  \
+        "{}\n{warnings}  {:.3} s, {:.3} s of it armed, with {}\n{torque}  \
          {} samples produced = {} received + {} dropped\n",
         s.title,
         s.duration_s,
         s.armed_s,
-        s.breaks,
-        s.sticks,
+        counts(&[(s.breaks, "break"), (s.sticks, "stick")]),
         s.telemetry.produced,
         s.telemetry.received,
         s.telemetry.dropped

@@ -1,5 +1,6 @@
 //! Identified values as a table and as JSON.
 
+use crate::sections::counts;
 use crepitus_identify::brace::{Brace, QuantityResult, Shown, Weight};
 use crepitus_table::Table;
 use serde_json::{Value, json};
@@ -42,7 +43,8 @@ pub(super) fn text(brace: &Brace) -> String {
     let (swings, seconds) = brace.swung();
     let _ = writeln!(
         text,
-        "{swings} swings, {seconds:.1} s, up to {:.0}°; the fit leaves {:.4}° rms.",
+        "{}, {seconds:.1} s, up to {:.0}°; the fit leaves {:.4}° rms.",
+        counts(&[(swings as u64, "swing")]),
         brace.amplitude_rad.to_degrees(),
         brace.rms_rad.to_degrees()
     );

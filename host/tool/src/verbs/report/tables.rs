@@ -1,6 +1,6 @@
 //! The tables of a recording's report.
 
-use crate::sections::{section, torque_section};
+use crate::sections::{counts, section, torque_section};
 use crepitus_recording::{Books, Controller, ParameterSet, RecordingSummary, seconds};
 use crepitus_report::Section;
 use serde_json::Value;
@@ -67,7 +67,7 @@ fn recording(s: &RecordingSummary) -> Section {
         ),
         (
             "events while armed",
-            format!("{} breaks, {} sticks", s.breaks, s.sticks),
+            counts(&[(s.breaks, "break"), (s.sticks, "stick")]),
         ),
         (
             "highest speed",

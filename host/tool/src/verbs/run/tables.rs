@@ -2,7 +2,7 @@
 //! in the report.
 
 use super::plant;
-use crate::sections::{millijoule, nm, section, torque_section};
+use crate::sections::{counts, millijoule, nm, section, torque_section};
 use crepitus_model::parameters::ParameterSpec;
 use crepitus_report::Section;
 use crepitus_scene::Summary;
@@ -18,8 +18,12 @@ pub(super) fn in_brief(s: &Summary) -> String {
             None => String::new(),
         };
         lines.push(format!(
-            "  {} breaks, {} sticks, {} reverses{cycles}",
-            e.breaks, e.sticks, e.reverses
+            "  {}{cycles}",
+            counts(&[
+                (e.breaks, "break"),
+                (e.sticks, "stick"),
+                (e.reverses, "reverse")
+            ])
         ));
     }
     if let Some(t) = &s.torque {
@@ -133,10 +137,11 @@ fn run_section(s: &Summary) -> Section {
     if let Some(e) = &s.events {
         rows.push((
             "events",
-            format!(
-                "{} breaks, {} sticks, {} reverses",
-                e.breaks, e.sticks, e.reverses
-            ),
+            counts(&[
+                (e.breaks, "break"),
+                (e.sticks, "stick"),
+                (e.reverses, "reverse"),
+            ]),
         ));
     }
     rows.push((
