@@ -16,7 +16,7 @@ pub mod shell;
 use crate::effect::Effect;
 use crepitus_model::render::effects::SPECS;
 
-const OWN: [Effect; 11] = [
+const OWN: &[Effect] = &[
     crepitus::EFFECT,
     encoder::EFFECT,
     motor::EFFECT,

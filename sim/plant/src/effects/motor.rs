@@ -24,6 +24,8 @@ use crate::effect::{Context, Effect, Given, Part, numbers};
 use crate::effects::motor::winding::{Course, Winding, WindingSettings};
 use crate::energy_balance::{Account, EnergyBalance};
 use crepitus_model::control::current_loop::{CurrentLoop, CurrentLoopSettings};
+use crepitus_model::control::device_limits::MotorSettings;
+use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::{ParameterSpec, Tabled};
 use crepitus_model::{Real, SettingsError};
 
@@ -55,31 +57,15 @@ pub(crate) const COLUMNS: [&str; 3] = ["motor_current_a", "motor_voltage_v", "mo
 const LOOP: &[ParameterSpec; 5] = CurrentLoopSettings::TABLE;
 
 /// What the loop is told, which is true of this winding, and what the joint
-/// gets of its current.
+/// gets of its current: the device's own torque constant and gear ratio.
 const TABLE: [ParameterSpec; 7] = [
     LOOP[0],
     LOOP[1],
     LOOP[2],
     LOOP[3],
     LOOP[4],
-    ParameterSpec {
-        key: "torque_constant_nm_per_a",
-        symbol: "Kt",
-        unit: "N·m/A",
-        min: 1e-4,
-        max: 10.0,
-        default: 0.0389,
-        meaning: "torque of the motor for one ampere, and its back-EMF for one rad/s",
-    },
-    ParameterSpec {
-        key: "gear_ratio",
-        symbol: "N",
-        unit: "motor turns per joint turn",
-        min: 1.0,
-        max: 1e4,
-        default: 86.0,
-        meaning: "reduction between the motor and the joint",
-    },
+    MotorSettings::TABLE[0],
+    EncoderSettings::TABLE[1],
 ];
 
 /// The numbers of a motor without the device's loop.
