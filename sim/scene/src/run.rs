@@ -44,10 +44,14 @@ pub trait Observer {
     const WANTS_ROWS: bool = true;
 
     /// A row of the trace, in the order of [`columns`].
-    fn row(&mut self, values: &[f64]) -> Result<(), Self::Error>;
+    fn row(&mut self, _: &[f64]) -> Result<(), Self::Error> {
+        Ok(())
+    }
 
     /// An event; it comes before the first row that is not before it.
-    fn event(&mut self, event: &EventRecord) -> Result<(), Self::Error>;
+    fn event(&mut self, _: &EventRecord) -> Result<(), Self::Error> {
+        Ok(())
+    }
 
     /// An event of a symptom, in the same order of time; those of the play under it
     /// only in scenes that ask for them.
@@ -56,7 +60,9 @@ pub trait Observer {
     }
 
     /// Called now and then with the time reached.
-    fn progress(&mut self, time_s: f64) -> Result<(), Self::Error>;
+    fn progress(&mut self, _: f64) -> Result<(), Self::Error> {
+        Ok(())
+    }
 }
 
 /// Sees nothing: a run for its totals.
@@ -66,18 +72,6 @@ pub struct Blind;
 impl Observer for Blind {
     type Error = Infallible;
     const WANTS_ROWS: bool = false;
-
-    fn row(&mut self, _: &[f64]) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn event(&mut self, _: &EventRecord) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
-        Ok(())
-    }
 }
 
 /// Why a run ended early.

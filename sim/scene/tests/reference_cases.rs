@@ -184,16 +184,8 @@ impl Observer for Events {
     type Error = Infallible;
     const WANTS_ROWS: bool = false;
 
-    fn row(&mut self, _: &[f64]) -> Result<(), Infallible> {
-        Ok(())
-    }
-
     fn event(&mut self, event: &EventRecord) -> Result<(), Infallible> {
         self.0.push(*event);
-        Ok(())
-    }
-
-    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
         Ok(())
     }
 }

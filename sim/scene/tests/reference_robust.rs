@@ -5,7 +5,7 @@ use crepitus_model::{Convention, Event, EventKind, Parameters, Phase, Sense, Set
 use crepitus_plant::Motion;
 use crepitus_plant::motion::{Strokes, VelocityKnot};
 use crepitus_scene::reference::{Follow, Reference};
-use crepitus_scene::{Observer, Overrides, Scene, run, trace::EventRecord};
+use crepitus_scene::{Observer, Overrides, Scene, run};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -324,12 +324,7 @@ fn a_run_can_be_ended_where_nothing_is_written() {
     struct Patience(u32);
     impl Observer for Patience {
         type Error = &'static str;
-        fn row(&mut self, _: &[f64]) -> Result<(), Self::Error> {
-            Ok(())
-        }
-        fn event(&mut self, _: &EventRecord) -> Result<(), Self::Error> {
-            Ok(())
-        }
+
         fn progress(&mut self, _: f64) -> Result<(), Self::Error> {
             self.0 += 1;
             if self.0 > 3 { Err("enough") } else { Ok(()) }
@@ -370,20 +365,8 @@ struct Words(usize);
 impl Observer for Words {
     type Error = std::convert::Infallible;
 
-    fn row(&mut self, _: &[f64]) -> Result<(), Self::Error> {
-        Ok(())
-    }
-
-    fn event(&mut self, _: &EventRecord) -> Result<(), Self::Error> {
-        Ok(())
-    }
-
     fn symptom(&mut self, _: &crepitus_scene::trace::SymptomEvent) -> Result<(), Self::Error> {
         self.0 += 1;
-        Ok(())
-    }
-
-    fn progress(&mut self, _: f64) -> Result<(), Self::Error> {
         Ok(())
     }
 }

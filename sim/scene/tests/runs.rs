@@ -29,10 +29,6 @@ impl Observer for Keep {
         self.events.push(*event);
         Ok(())
     }
-
-    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
-        Ok(())
-    }
 }
 
 /// A scene from its parts.

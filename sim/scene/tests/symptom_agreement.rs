@@ -10,7 +10,7 @@ mod random_scene;
 
 use crepitus_model::render::effects::symptom::Word;
 use crepitus_scene::run::columns;
-use crepitus_scene::trace::{EventRecord, SymptomEvent};
+use crepitus_scene::trace::SymptomEvent;
 use crepitus_scene::{Observer, Overrides, Scene, run};
 use random_scene::{Random, TICK_S, Tolerance, effects, motion};
 use std::convert::Infallible;
@@ -39,16 +39,8 @@ impl Observer for Keep {
         Ok(())
     }
 
-    fn event(&mut self, _: &EventRecord) -> Result<(), Infallible> {
-        Ok(())
-    }
-
     fn symptom(&mut self, event: &SymptomEvent) -> Result<(), Infallible> {
         self.events.push(*event);
-        Ok(())
-    }
-
-    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
         Ok(())
     }
 }

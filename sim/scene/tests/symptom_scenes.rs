@@ -4,7 +4,7 @@
 //! They are in `shared/truth/disorders` beside the repository.
 
 use crepitus_scene::run::columns;
-use crepitus_scene::trace::{EventRecord, SymptomEvent};
+use crepitus_scene::trace::SymptomEvent;
 use crepitus_scene::{Observer, Overrides, Scene, run};
 use serde_json::Value;
 use std::convert::Infallible;
@@ -99,16 +99,8 @@ impl Observer for Keep {
         Ok(())
     }
 
-    fn event(&mut self, _: &EventRecord) -> Result<(), Infallible> {
-        Ok(())
-    }
-
     fn symptom(&mut self, event: &SymptomEvent) -> Result<(), Infallible> {
         self.events.push(*event);
-        Ok(())
-    }
-
-    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
         Ok(())
     }
 }

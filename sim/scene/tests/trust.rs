@@ -2,7 +2,6 @@
 //! on both sides of its limit.
 
 use crepitus_scene::run::{STRUCK_COLUMN, columns};
-use crepitus_scene::trace::EventRecord;
 use crepitus_scene::{Observer, Overrides, Scene, Summary, run};
 use std::convert::Infallible;
 use std::path::Path;
@@ -18,14 +17,6 @@ impl Observer for Keep {
 
     fn row(&mut self, values: &[f64]) -> Result<(), Infallible> {
         self.values.push(values[self.place]);
-        Ok(())
-    }
-
-    fn event(&mut self, _: &EventRecord) -> Result<(), Infallible> {
-        Ok(())
-    }
-
-    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
         Ok(())
     }
 }

@@ -24,6 +24,7 @@ pub mod event_errors;
 pub mod limits;
 pub mod matching;
 mod parallel;
+mod random;
 pub mod sampling;
 pub mod stability;
 pub mod symptoms;

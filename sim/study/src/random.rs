@@ -1,4 +1,4 @@
-//! Random numbers for trials: SplitMix64, the same on every machine.
+//! Random numbers for trials: SplitMix64 (Steele, Lea and Flood 2014), the same on every machine.
 
 /// A stream of random numbers.
 #[derive(Clone, Debug)]
@@ -12,6 +12,11 @@ impl Random {
 
     /// Uniform in [−1, 1).
     pub(crate) fn signed(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+
+    /// Uniform in [0, 1).
+    pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -20,7 +25,7 @@ impl Random {
         // 53 bits make a number in [0, 1) without rounding.
         #[expect(clippy::cast_precision_loss, reason = "53 bits fit")]
         let unit = (z >> 11) as f64 / (1_u64 << 53) as f64;
-        2.0 * unit - 1.0
+        unit
     }
 }
 

@@ -32,7 +32,6 @@ mod observation;
 mod observe;
 mod parameter_changes;
 mod pressed;
-pub(crate) mod random;
 mod rendered;
 pub mod replay;
 mod shaking_hand;

@@ -66,10 +66,6 @@ impl Observer for Hand {
         self.events += u64::from(!event.word.is_of_play());
         Ok(())
     }
-
-    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
-        Ok(())
-    }
 }
 
 fn hand(scene: &Scene) -> (Vec<f64>, u64) {

@@ -2,7 +2,6 @@
 
 use crate::plan::Plan;
 use crate::row::Row;
-use crepitus_scene::trace::EventRecord;
 use crepitus_scene::{Observer, run};
 use std::io;
 use std::ops::Range;
@@ -132,14 +131,6 @@ struct Unseen<'s>(&'s Stop);
 impl Observer for Unseen<'_> {
     type Error = Ended;
     const WANTS_ROWS: bool = false;
-
-    fn row(&mut self, _: &[f64]) -> Result<(), Ended> {
-        Ok(())
-    }
-
-    fn event(&mut self, _: &EventRecord) -> Result<(), Ended> {
-        Ok(())
-    }
 
     fn progress(&mut self, _: f64) -> Result<(), Ended> {
         self.0.check()

@@ -6,7 +6,6 @@ use crate::pool::{Ended, Stop};
 use crate::row::Row;
 use crepitus_scene::output::TraceCsv;
 use crepitus_scene::run::columns;
-use crepitus_scene::trace::EventRecord;
 use crepitus_scene::{Observer, RunError, run};
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
@@ -23,10 +22,6 @@ impl Observer for Trace<'_> {
 
     fn row(&mut self, values: &[f64]) -> Result<(), Ended> {
         self.csv.row(values).map_err(Ended::Failed)
-    }
-
-    fn event(&mut self, _: &EventRecord) -> Result<(), Ended> {
-        Ok(())
     }
 
     fn progress(&mut self, _: f64) -> Result<(), Ended> {

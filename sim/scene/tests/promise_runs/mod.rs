@@ -1,7 +1,7 @@
 //! Runs of a symptom's scene in three ways, and what is read off them.
 
 use crepitus_scene::run::columns;
-use crepitus_scene::trace::{EventRecord, SymptomEvent};
+use crepitus_scene::trace::SymptomEvent;
 use crepitus_scene::{Observer, Overrides, Scene, run};
 use std::convert::Infallible;
 use std::path::Path;
@@ -119,16 +119,8 @@ impl Observer for Found {
         Ok(())
     }
 
-    fn event(&mut self, _: &EventRecord) -> Result<(), Infallible> {
-        Ok(())
-    }
-
     fn symptom(&mut self, event: &SymptomEvent) -> Result<(), Infallible> {
         self.events.push(*event);
-        Ok(())
-    }
-
-    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
         Ok(())
     }
 }

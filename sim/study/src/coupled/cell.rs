@@ -4,7 +4,6 @@ use super::setting::{DURATION_S, Setting, TICK_S};
 use crate::parallel::Meter;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_scene::run::{Observer, RunError, columns, run};
-use crepitus_scene::trace::EventRecord;
 use serde::Serialize;
 
 /// Length of a window, s. The last two of a run are compared: by then a hand's
@@ -164,10 +163,6 @@ impl Observer for RippleObserver<'_> {
         } else if left_s <= 2.0 * WINDOW_S {
             self.before.add(*angle_rad);
         }
-        Ok(())
-    }
-
-    fn event(&mut self, _: &EventRecord) -> Result<(), Stopped> {
         Ok(())
     }
 

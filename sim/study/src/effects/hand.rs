@@ -3,7 +3,7 @@
 use crate::parallel::Meter;
 use crepitus_model::Real;
 use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns};
-use crepitus_scene::trace::{EventRecord, SymptomEvent};
+use crepitus_scene::trace::SymptomEvent;
 use crepitus_scene::{RunError, Scene, Summary};
 
 /// Why a run has no result.
@@ -105,10 +105,6 @@ impl<F: FnMut(f64) -> bool> Observer for HandTorqueObserver<'_, F> {
         } else {
             Err(Ended::StoppedEarly)
         }
-    }
-
-    fn event(&mut self, _: &EventRecord) -> Result<(), Ended> {
-        Ok(())
     }
 
     fn symptom(&mut self, event: &SymptomEvent) -> Result<(), Ended> {

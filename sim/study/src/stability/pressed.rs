@@ -5,7 +5,7 @@ use super::observation::Observation;
 use super::subject::Subject;
 use crate::symptoms::event::{SymptomEvent, own};
 use crepitus_scene::run::{Observer, columns};
-use crepitus_scene::trace::{EventRecord, SymptomEvent as SceneEvent};
+use crepitus_scene::trace::SymptomEvent as SceneEvent;
 use crepitus_scene::{Overrides, Scene, run};
 use std::convert::Infallible;
 use std::path::Path;
@@ -65,10 +65,6 @@ impl Observer for Rotor<'_> {
         Ok(())
     }
 
-    fn event(&mut self, _: &EventRecord) -> Result<(), Infallible> {
-        Ok(())
-    }
-
     fn symptom(&mut self, event: &SceneEvent) -> Result<(), Infallible> {
         self.events.push(SymptomEvent {
             time_s: event.time_s,
@@ -77,10 +73,6 @@ impl Observer for Rotor<'_> {
             before_nm: event.torque_before_nm,
             after_nm: event.torque_after_nm,
         });
-        Ok(())
-    }
-
-    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
         Ok(())
     }
 }

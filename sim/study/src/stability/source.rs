@@ -2,7 +2,7 @@
 
 use super::guarded_joint::missing_step;
 use super::input::{Fault, Input, Rendered, Shaft};
-use super::random::Random;
+use crate::random::Random;
 use crate::sampling::{CHUNK_STEPS, Sampling, Walk};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::{Real, SettingsError, ShaftStep};

@@ -1,6 +1,6 @@
 //! A motion of the hand, in degrees of the joint.
 
-use crate::stability::random::Random;
+use crate::random::Random;
 use crate::stability::text::{Plain, Time};
 use crepitus_plant::Motion;
 use crepitus_plant::motion::{Strokes, VelocityKnot};

@@ -2,6 +2,7 @@
 
 use super::signals::Kept;
 use super::{BAND_HZ, MOST_LAG_S};
+use crate::random::Random;
 use crepitus_model::Real;
 use crepitus_plant::effect::Part;
 use crepitus_scene::Scene;
@@ -70,25 +71,9 @@ impl fmt::Display for Draws {
     }
 }
 
-/// Numbers from 0 to 1, the same ones in every run.
-struct Random(u64);
-
-impl Random {
-    /// SplitMix64 (Steele, Lea and Flood 2014).
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        #[expect(clippy::cast_precision_loss, reason = "53 bits")]
-        let share = ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64;
-        share
-    }
-}
-
 /// The device as it may be, while its parameters stay those of the nominal one.
 pub(super) fn scenes(scene: &Scene, count: usize) -> Vec<Scene> {
-    let mut random = Random(20);
+    let mut random = Random::new(20);
     (0..count)
         .map(|_| {
             let mut scene = super::Step::Actuator.free(scene);
@@ -100,7 +85,7 @@ pub(super) fn scenes(scene: &Scene, count: usize) -> Vec<Scene> {
                 for key in names.map_or(&[][..], |(_, keys)| keys) {
                     let place = listed.effect.parameters.iter().position(|p| p.key == *key);
                     if let Some(number) = place.and_then(|i| listed.given.numbers.get_mut(i)) {
-                        *number *= 1.0 + SPREAD * (2.0 * random.next() - 1.0);
+                        *number *= 1.0 + SPREAD * (2.0 * random.unit() - 1.0);
                     }
                 }
             }
@@ -155,8 +140,8 @@ mod tests {
     use super::*;
 
     fn kept(level: f64) -> Kept {
-        let mut random = Random(1);
-        let acceleration: Vec<f64> = (0..40_000).map(|_| level * (random.next() - 0.5)).collect();
+        let mut random = Random::new(1);
+        let acceleration: Vec<f64> = (0..40_000).map(|_| level * (random.unit() - 0.5)).collect();
         Kept {
             step_s: 5e-5,
             torque: Vec::new(),

@@ -4,7 +4,6 @@ use super::{Coil, SETTLES};
 use crate::parallel::Meter;
 use crepitus_model::Real;
 use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns, step_count};
-use crepitus_scene::trace::EventRecord;
 use crepitus_scene::{Scene, Walk};
 
 /// Those of one run, once it has settled.
@@ -49,10 +48,6 @@ impl Observer for Recorder<'_> {
         for (place, row) in self.places.iter().zip(&mut self.rows) {
             row.extend(place.and_then(|place| values.get(place)));
         }
-        Ok(())
-    }
-
-    fn event(&mut self, _: &EventRecord) -> Result<(), Stopped> {
         Ok(())
     }
 

@@ -128,10 +128,6 @@ impl Observer for EventsAlone {
     type Error = WatchError;
     const WANTS_ROWS: bool = false;
 
-    fn row(&mut self, _: &[f64]) -> Result<(), WatchError> {
-        Ok(())
-    }
-
     fn event(&mut self, event: &EventRecord) -> Result<(), WatchError> {
         self.events.event(event).map_err(WatchError::Write)
     }
