@@ -23,6 +23,9 @@ pub use coefficients::StepCoefficients;
 pub use event::{EVENTS_PER_STEP, Event};
 pub use parameters::Parameters;
 pub use phase::{EventKind, Phase, Sense};
-pub use settings::{Convention, LONGEST_STEP_S, Restart, Settings, SettingsError, Validated};
+pub use settings::{
+    Convention, LONGEST_STEP_S, MOST_STIFFNESS_NM_PER_RAD, Restart, Settings, SettingsError,
+    Validated,
+};
 pub use shaft::ShaftStep;
 pub use stick_slip::StickSlip;

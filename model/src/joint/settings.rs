@@ -2,11 +2,14 @@
 
 use crate::joint::Parameters;
 use crate::parameters::{OutOfRange, ParameterSpec, Tabled};
-use crate::render::effects::MOST_STIFFNESS_NM_PER_RAD;
 use core::fmt;
 
 /// The longest step, s.
 pub const LONGEST_STEP_S: f64 = 1.0;
+
+/// The stiffest that everything together may be where all is elastic, N·m/rad:
+/// dry friction of 0.1 N·m keeps a rotor with as much quiet.
+pub const MOST_STIFFNESS_NM_PER_RAD: f64 = 1200.0;
 
 /// How a slip ends. The paper admits three readings; the book's model page
 /// compares them.

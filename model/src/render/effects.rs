@@ -31,7 +31,7 @@ pub use faded::Faded;
 pub use kept::Kept;
 pub use phases::{PhaseSpec, Phases};
 pub use slewed::Slewed;
-pub use together::{MOST_SHARE_AT_A_WALL, MOST_STIFFNESS_NM_PER_RAD};
+pub use together::MOST_SHARE_AT_A_WALL;
 
 use super::input_check::Checked;
 use super::position::{Position, Scale, Sight, Travel};

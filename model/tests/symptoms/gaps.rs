@@ -1,13 +1,14 @@
 //! Commits and gaps in contact: what a fuzzer found.
 
 use super::rig::*;
+use crepitus_model::joint::MOST_STIFFNESS_NM_PER_RAD;
+use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::clasp_knife::ClaspKnifeSettings;
 use crepitus_model::render::effects::lead_pipe::LeadPipeSettings;
 use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_model::render::effects::symptom::Word;
 use crepitus_model::render::effects::texture::TextureSettings;
-use crepitus_model::render::effects::{EffectSettings, MOST_STIFFNESS_NM_PER_RAD};
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
 use crepitus_model::render::position::Sight;
 use crepitus_model::render::{Addition, Check, Seen, Shown};

@@ -11,7 +11,8 @@
 use super::rig::*;
 
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::render::effects::{EffectSettings, MOST_STIFFNESS_NM_PER_RAD};
+use crepitus_model::joint::MOST_STIFFNESS_NM_PER_RAD;
+use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::position::{Position, Sight};
 use crepitus_model::{Real, Sample};
 

@@ -1,7 +1,8 @@
 //! A symptom on a device that runs: its state outlives a commit.
 
 use super::symptom::{Besides, Law, law_nm};
-use super::{MOST_STIFFNESS_NM_PER_RAD, Observe, Switched, Tick};
+use super::{Observe, Switched, Tick};
+use crate::joint::MOST_STIFFNESS_NM_PER_RAD;
 use crate::real::Real;
 use crate::render::input_check::HOLD_TICKS;
 use crate::render::position::{Position, Travel};

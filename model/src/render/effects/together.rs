@@ -9,12 +9,8 @@ use super::range_limit::RangeLimit;
 use super::spasticity::Spasticity;
 use super::symptom::Law;
 use super::texture::Texture;
-use crate::joint::{Parameters, SettingsError};
+use crate::joint::{MOST_STIFFNESS_NM_PER_RAD, Parameters, SettingsError};
 use crate::parameters::Tabled;
-
-/// The stiffest that everything together may be where all is elastic, N·m/rad:
-/// dry friction of 0.1 N·m keeps a rotor with as much quiet.
-pub const MOST_STIFFNESS_NM_PER_RAD: f64 = 1200.0;
 
 /// The share of the gear's friction that may be cancelled in front of a wall.
 pub const MOST_SHARE_AT_A_WALL: f64 = 0.8;
