@@ -38,6 +38,12 @@ impl Folder {
             Some(parent) if !parent.as_os_str().is_empty() => parent,
             _ => Path::new("."),
         };
+        if parent.exists() && !parent.is_dir() {
+            return Err(io::Error::new(
+                io::ErrorKind::NotADirectory,
+                "what it would be in is a file, not a folder",
+            ));
+        }
         fs::create_dir_all(parent)?;
         let parts = tempfile::Builder::new()
             .prefix(".crepitus-")
