@@ -7,14 +7,13 @@ use crate::values;
 use crepitus_sweep::axis::Values;
 use crepitus_sweep::parts::Kind;
 use crepitus_sweep::{
-    Axis, Cell, Design, Plan, Points, Receiver, Row, Sampled, Stop, run_all, totals,
+    Axis, Cell, Design, Ended, Plan, Points, Receiver, Row, Sampled, Stop, run_all, totals,
 };
 use numpy::IntoPyArray;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString};
 use std::collections::HashMap;
-use std::io;
 use std::iter::once;
 use std::num::NonZero;
 use std::thread::available_parallelism;
@@ -26,24 +25,28 @@ struct Rows {
 }
 
 /// Exception that ended a sweep.
-struct Ended(PyErr);
+struct Failed(PyErr);
 
-impl From<io::Error> for Ended {
-    fn from(error: io::Error) -> Self {
-        Self(PyOSError::new_err(error.to_string()))
+impl From<Ended> for Failed {
+    fn from(ended: Ended) -> Self {
+        Self(PyOSError::new_err(match ended {
+            Ended::Stopped => "the sweep was stopped".to_owned(),
+            Ended::Failed(error) => error.to_string(),
+            Ended::NoThread(error) => format!("no thread can be started: {error}"),
+        }))
     }
 }
 
 impl Receiver for Rows {
-    type Error = Ended;
+    type Error = Failed;
 
-    fn row(&mut self, row: Row) -> Result<(), Ended> {
+    fn row(&mut self, row: Row) -> Result<(), Failed> {
         self.ended.push(row);
         Ok(())
     }
 
-    fn poll(&mut self) -> Result<(), Ended> {
-        self.signals.check().map_err(Ended)
+    fn poll(&mut self) -> Result<(), Failed> {
+        self.signals.check().map_err(Failed)
     }
 }
 
@@ -150,7 +153,7 @@ fn run<'py>(
             signals: Signals::new(),
         };
         let run = |point, stop: &Stop| totals(&plan, point, stop);
-        run_all(once(0..plan.runs()), threads, &mut rows, run).map_err(|Ended(error)| error)?;
+        run_all(once(0..plan.runs()), threads, &mut rows, run).map_err(|Failed(error)| error)?;
         rows.ended.sort_by_key(|row| row.index);
         Ok(rows.ended)
     })?;

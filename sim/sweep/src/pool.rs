@@ -44,7 +44,7 @@ pub enum Ended {
 }
 
 /// Runs the points of `ranges` by `run` on `threads` threads: at least one, no more than
-/// points, and fewer where the system gives fewer.
+/// points, and fewer where the system gives fewer. Returns how many there were.
 ///
 /// # Errors
 /// The receiver's, or of a run's own file; runs that have begun are abandoned then. Or there is
@@ -54,7 +54,7 @@ pub fn run_all<R: Receiver>(
     threads: usize,
     receiver: &mut R,
     run: impl Fn(u64, &Stop) -> Result<Row, Ended> + Sync,
-) -> Result<(), R::Error> {
+) -> Result<usize, R::Error> {
     let ranges: Vec<_> = ranges.into_iter().collect();
     let count: u64 = ranges.iter().map(|range| range.end - range.start).sum();
     let most = usize::try_from(count).unwrap_or(MOST_THREADS);
@@ -63,7 +63,8 @@ pub fn run_all<R: Receiver>(
     let stop = Stop::default();
     thread::scope(|scope| {
         let (sender, rows) = mpsc::sync_channel(WAITING * threads);
-        for number in 0..threads {
+        let mut running = 0;
+        for _ in 0..threads {
             let (sender, points, run, stop) = (sender.clone(), &points, &run, &stop);
             let started = thread::Builder::new().spawn_scoped(scope, move || {
                 // A poisoned lock: another thread panicked outside of a run.
@@ -76,8 +77,8 @@ pub fn run_all<R: Receiver>(
                 }
             });
             match started {
-                Ok(_) => {}
-                Err(error) if number == 0 => return Err(Ended::NoThread(error).into()),
+                Ok(_) => running += 1,
+                Err(error) if running == 0 => return Err(Ended::NoThread(error).into()),
                 Err(_) => break,
             }
         }
@@ -88,7 +89,7 @@ pub fn run_all<R: Receiver>(
         }
         // Who waits to send ends, too.
         drop(rows);
-        outcome
+        outcome.map(|()| running)
     })
 }
 
@@ -181,7 +182,7 @@ mod tests {
                 cells: Vec::new(),
             })
         });
-        assert!(outcome.is_ok(), "{outcome:?}");
+        assert_eq!(outcome.ok(), Some(3));
         assert_eq!(ran.into_inner().unwrap(), BTreeSet::from([0, 1, 5]));
         assert!(seen.into_inner().unwrap().len() <= 3);
     }

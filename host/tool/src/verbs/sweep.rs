@@ -201,9 +201,9 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .shard
         .map_or(0..plan.runs(), |shard| shard.points(plan.runs()));
     let begun = Instant::now();
-    let ran = run_points(arguments, &plan, points, threads, &mut store)?;
+    let (runs, threads) = run_points(arguments, &plan, points, threads, &mut store)?;
     let ran = Ran {
-        runs: ran,
+        runs,
         threads,
         wall_s: begun.elapsed().as_secs_f64(),
     };
@@ -275,14 +275,14 @@ fn open(out: &Path, plan: &Plan, force: bool) -> Result<Store, Failure> {
     }
 }
 
-/// Runs what has no row yet of these points; how many that were.
+/// Runs what has no row yet of these points; how many that were, and on how many threads.
 fn run_points(
     arguments: &Arguments,
     plan: &Plan,
     points: Range<u64>,
     threads: usize,
     store: &mut Store,
-) -> Result<u64, Failure> {
+) -> Result<(u64, usize), Failure> {
     let missing = store.missing(points).map_err(store_failure)?;
     let wanted: u64 = missing.iter().map(|range| range.end - range.start).sum();
     let traces = if arguments.traces {
@@ -302,7 +302,7 @@ fn run_points(
     );
     let ran = progress.finish().map_err(store_failure)?;
     match outcome {
-        Ok(()) => Ok(ran),
+        Ok(threads) => Ok((ran, threads)),
         Err(End::Interrupted) => Err(Failure::Work(format!(
             "interrupted after {ran} of {wanted} runs: the same command goes on from there"
         ))),

@@ -28,7 +28,7 @@ pub(super) fn run(plan: &Plan, runs: u64, threads: usize, as_json: bool) -> Resu
     run_all(once(0..warm_up), threads, &mut warm, run).map_err(failure)?;
     let mut rows = Rows::new(count);
     let begun = Instant::now();
-    run_all(once(0..count), threads, &mut rows, run).map_err(failure)?;
+    let threads = run_all(once(0..count), threads, &mut rows, run).map_err(failure)?;
     let wall_s = begun.elapsed().as_secs_f64();
 
     let failed = rows
