@@ -157,7 +157,7 @@ pub(super) fn read_trace_step(
     };
     if duration_s / step_s > MOST_STEPS {
         return Err(refuse(format!(
-            "{step_s} s makes more than {MOST_STEPS:e} rows of {duration_s} s"
+            "rows every {step_s} s are more than {MOST_STEPS:e} in {duration_s} s"
         )));
     }
     Ok(step_s)
