@@ -142,7 +142,7 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "encoder-lost",
         cause: "a broken encoder line, or interference",
         detector: Detector::Drive,
-        detection: "20 ticks (1 ms) without a plausible count; five with one make up for one without",
+        detection: "20 ticks (1 ms) without a plausible count; eight with one make up for one without",
         reaction: FLOAT,
         within_ticks: Some(21),
         clear: REPAIR,
@@ -153,7 +153,7 @@ pub const FAULTS: [FaultSpec; 48] = [
         cause: "the joint turns faster than its gear permits, or than the supply could hold the motor's current",
         detector: Detector::Drive,
         detection: "the estimated speed is above limits.speed_rad_s, or above 95 % of that whose back-EMF is the bridge's \
-                    largest voltage (5.73 rad/s at 24 V), for 20 ticks (1 ms) while armed; the estimate lags a speed that grows by up to 150 ticks",
+                    largest voltage with the supply as it is (5.73 rad/s at 24 V), for 20 ticks (1 ms) while armed; the estimate lags a speed that grows by up to 150 ticks",
         reaction: FLOAT,
         within_ticks: Some(170),
         clear: CLEAR,
@@ -207,7 +207,7 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "current-missing",
         cause: "the converter does not run",
         detector: Detector::Drive,
-        detection: "3 ticks without a measured current, from one of the sensors, while armed; five with both make up for \
+        detection: "3 ticks without a measured current, from one of the sensors, while armed; eight with both make up for \
                     one without",
         reaction: FLOAT,
         within_ticks: Some(4),
@@ -239,7 +239,7 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "enable-stuck-off",
         cause: "the drive's enable line cannot be switched on, or falls while armed",
         detector: Detector::Drive,
-        detection: "the line is read back off in 9 ticks; five with it on make up for one",
+        detection: "the line is read back off in 9 ticks; eight with it on make up for one",
         reaction: FLOAT,
         within_ticks: Some(10),
         clear: REPAIR,
@@ -299,7 +299,7 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "current-disagreement",
         cause: "one of the two shunts, amplifiers or converters of the motor's current is broken or has drifted",
         detector: Detector::Drive,
-        detection: "the two sensors of the current differ by more than 0.2 A in 2 ticks while armed; five in which they do not make up \
+        detection: "the two sensors of the current differ by more than 0.2 A in 2 ticks while armed; eight in which they do not make up \
                     for one",
         reaction: FLOAT,
         within_ticks: Some(3),
@@ -310,8 +310,8 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "tick-irregular",
         cause: "the timer of the drive's tasks is disturbed, or something holds up its most urgent task",
         detector: Detector::Drive,
-        detection: "the time between two ticks, by another timer, is not 50 ± 5 µs 3 times while armed; five \
-                    that are make up for one",
+        detection: "the time between two ticks, by another timer, is not 50 ± 5 µs 3 consecutive times while \
+                    armed",
         reaction: FLOAT,
         within_ticks: Some(4),
         clear: CLEAR,
@@ -538,7 +538,8 @@ pub const FAULTS: [FaultSpec; 48] = [
         cause: "the drive computes wrongly",
         detector: Detector::Comms,
         detection: "in 4 consecutive samples the torque is above limits.torque_nm, or the model's above its static \
-                    torque, as committed; or 24 samples with torque of a drive that says it is not armed",
+                    torque, as committed; or 24 samples with torque of a drive that says it is not armed, \
+                    while the line of comms is on",
         reaction: LINE_OFF,
         within_ticks: Some(100),
         clear: REPAIR,
@@ -559,7 +560,8 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "comms-overspeed",
         cause: "the drive does not react to too much speed",
         detector: Detector::Comms,
-        detection: "in 3 sound blocks in a row the counts are above 1.15 times limits.speed_rad_s; blocks may be missing between",
+        detection: "in 3 sound blocks in a row the counts are above 1.15 times the speed at which the drive lets go, with \
+                    the supply as it is set; blocks may be missing between",
         reaction: LINE_OFF,
         within_ticks: Some(160),
         clear: CLEAR,

@@ -5,6 +5,7 @@
 //! debounce of each is longer than the drive's.
 
 use crate::drive::plausibility::TRIP_A;
+use crate::drive::prepare::held_rad_s_per_volt;
 use crepitus_model::Real;
 use crepitus_protocol::telemetry::{BLOCK_TICKS, Block, NO_CURRENT, Sample, SampleFlags};
 use crepitus_protocol::{DeviceSettings, Fault, LimitReason, State, TICK_S};
@@ -61,7 +62,9 @@ impl Bounds {
         let joint = settings.crepitus.as_ref().map(|joint| &joint.parameters);
         let most_nm = settings.effects.torque_bound_nm(joint);
         let rad_per_count = settings.encoder.rad_per_count();
-        let rad = FAST_SHARE * settings.limits.speed_rad_s * TICK_S * f64::from(BLOCK_TICKS);
+        let held_rad_s = held_rad_s_per_volt(settings) * settings.current_loop.supply_v;
+        let speed_rad_s = settings.limits.speed_rad_s.at_most(held_rad_s);
+        let rad = FAST_SHARE * speed_rad_s * TICK_S * f64::from(BLOCK_TICKS);
         Self {
             model_torque_nm: single(most_nm * MARGIN),
             torque_nm: single(settings.limits.torque_nm * MARGIN),
@@ -103,6 +106,8 @@ pub struct SampleChecks {
     outside: u32,
     astray: u32,
     fast_blocks: u32,
+    /// The block before was of a drive that said it was armed.
+    was_live: bool,
     /// End of the last block whose counts are sound, and its last count.
     last: Option<(u64, i32)>,
 }
@@ -116,25 +121,30 @@ impl SampleChecks {
         if !is_live && !line_is_on {
             *self = Self {
                 last: self.last,
+                was_live: is_live,
                 ..Self::default()
             };
             return None;
         }
+        // The state and the zero are those at a block's end: in the last one with torque they may
+        // be what the drive has just found.
+        let is_last = core::mem::replace(&mut self.was_live, is_live) && !is_live;
         let range = (block.flags.is_zeroed()).then_some(bounds.range);
         let fault = (block.samples.iter()).find_map(|sample| {
-            let fault = self.sample(sample, bounds);
-            let fault = fault.or_else(|| self.place(sample, range));
+            let fault = self.sample(sample, bounds, is_last);
+            let fault = fault.or_else(|| is_live.then(|| self.place(sample, range))?);
             fault.or_else(|| self.state(sample, is_live))
         });
         // A leg that coasts may be fast.
         fault.or_else(|| self.speed(speed.filter(|_| is_live), bounds))
     }
 
-    fn sample(&mut self, sample: &Sample, bounds: &Bounds) -> Option<Fault> {
+    fn sample(&mut self, sample: &Sample, bounds: &Bounds, is_last: bool) -> Option<Fault> {
         let current_a =
             (sample.current_ma != NO_CURRENT).then(|| f32::from(sample.current_ma) * 1e-3);
         let is_over = current_a.is_some_and(|a| a.abs() > TRIP_A);
-        if held(&mut self.overcurrent, is_over) >= BEYOND_SAMPLES {
+        // A sensor that is stuck goes on when the drive has let go.
+        if held(&mut self.overcurrent, is_over && !is_last) >= BEYOND_SAMPLES {
             return Some(Fault::CommsOvercurrent);
         }
         // A NaN is beyond every bound.
@@ -261,7 +271,7 @@ mod tests {
         for torque_nm in [-4.5, -0.4, 0.0, 4.5] {
             let model_torque_nm = 0.4_f32.copysign(torque_nm);
             let sample = |n| Sample {
-                count: n * 10,
+                count: n * 9,
                 model_torque_nm,
                 ..energised(torque_nm)
             };
@@ -289,12 +299,18 @@ mod tests {
             ..energised(0.0)
         };
         assert_eq!(armed(beside), Some((Fault::CurrentBesideTorque, 6)));
-        // 7.33 rad/s are 10.3 counts a tick.
+        // 5.73 rad/s are 8.0 counts a tick, with 15 % and the bound's two counts 9.4.
         let fast = |n: i32| Sample {
-            count: n * 12,
+            count: n * 10,
             ..energised(0.0)
         };
         assert_eq!(armed(fast), Some((Fault::CommsOverspeed, 4)));
+        // Also where the voltage is at its limit, which excuses the current.
+        let limited = |n| Sample {
+            flags: fast(n).flags.with_limit(LimitReason::Voltage),
+            ..fast(n)
+        };
+        assert_eq!(armed(limited), Some((Fault::CommsOverspeed, 4)));
     }
 
     #[test]
@@ -333,7 +349,7 @@ mod tests {
         };
         assert_eq!(armed(over), None);
         let fast = |n: i32| Sample {
-            count: n.min(60) * 12,
+            count: n.min(60) * 10,
             ..energised(0.0)
         };
         assert_eq!(armed(fast), None);
@@ -391,20 +407,29 @@ mod tests {
             assert_eq!(check(sample, false), None);
         }
         assert_eq!(check(Sample::default(), true), None);
-        // Its last block is that of an honest one, wherever in it torque ends.
-        for last in 0..20 {
+    }
+
+    /// The last block of an honest drive, wherever in it torque ends, and whatever it has found:
+    /// that the zero is lost, or a current that stays.
+    #[test]
+    fn what_a_drive_has_just_found_is_no_second_fault() {
+        for (last, zeroed) in (0..20).flat_map(|last| [(last, true), (last, false)]) {
             let mut checks = SampleChecks::default();
             for n in 0..6 {
                 let is_last = n == 3;
-                let state = if n < 3 { State::Armed } else { State::Disarmed };
+                let state = if n < 3 { State::Armed } else { State::Faulted };
+                let after = Sample {
+                    current_ma: if is_last { 2_500 } else { 0 },
+                    ..Sample::default()
+                };
                 let block = Block {
                     first_tick: n * 20,
-                    flags: BlockFlags::new(state, true, 1),
+                    flags: BlockFlags::new(state, zeroed || n < 3, 1),
                     samples: core::array::from_fn(|k| {
                         if n < 3 || is_last && k < last {
                             energised(0.3)
                         } else {
-                            Sample::default()
+                            after
                         }
                     }),
                     ..Block::default()

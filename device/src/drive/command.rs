@@ -153,8 +153,7 @@ impl Command {
         if let Some(motor) = &plan.motor {
             self.motor = Motor::new(motor);
         }
-        // Its windows begin with a block's second tick from now on, so that none ends in a
-        // tick in which there is a plan to be applied.
+        // No window ends in a tick that has a plan to apply.
         self.emf_check = EmfCheck::default();
         // Counts from the zero would be another angle.
         self.zeroed &= plan.rad_per_count == self.rad_per_count;

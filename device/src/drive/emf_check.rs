@@ -10,7 +10,7 @@
 //! is beyond the slack in two windows in a row, the same way, is a contradiction.
 //! A single disturbed sample at their border pulls them apart. A tick of which something is
 //! not known begins another window; what the one before it said stays. Where more than one in
-//! six are like that, [`plausibility`](crate::drive::plausibility) ends torque.
+//! nine are like that, [`plausibility`](crate::drive::plausibility) ends torque.
 
 use crate::drive::prepare::MotorPlan;
 use crepitus_protocol::TICK_S;

@@ -56,7 +56,7 @@ impl HeartbeatMonitor {
         let is_new = restarted
             || (1..=MOST_AHEAD).contains(&ahead)
             || self.comms_start.is_none()
-            || ahead != 0 && self.is_silent(now);
+            || ahead != 0 && self.was_silent(now);
         if !is_new {
             return Freshness::Stale;
         }
@@ -81,6 +81,11 @@ impl HeartbeatMonitor {
     /// Whether the lease has not expired.
     pub fn is_leased(&self, now: u64) -> bool {
         self.last_tick.is_some() && now < self.lease_end
+    }
+
+    /// Whether the timeout was over in a tick before this one, which has acted on it.
+    fn was_silent(&self, now: u64) -> bool {
+        self.is_silent(now.saturating_sub(1))
     }
 
     fn is_silent(&self, now: u64) -> bool {
@@ -191,8 +196,12 @@ mod tests {
             }
             assert_eq!(monitor.timeout(now), None, "{now}");
         }
+        // What is received in a tick comes before its timeout.
+        for heartbeat in &sent {
+            assert_eq!(monitor.receive(end, heartbeat), Freshness::Stale);
+        }
         assert_eq!(monitor.timeout(end), Some(Fault::CommsSilent));
-        assert_eq!(monitor.receive(end, &sent[2]), Freshness::Stale);
+        assert_eq!(monitor.receive(end + 1, &sent[2]), Freshness::Stale);
         // As many may be lost as the timeout does not last.
         let ahead = |ahead| Heartbeat {
             number: sent[2].number.wrapping_add(ahead),

@@ -51,7 +51,7 @@ struct Check {
 }
 
 /// A tick in which a condition holds, in the unit of its counter.
-const TICK: u16 = 5;
+const TICK: u16 = 8;
 
 /// A condition of which a single tick without it forgets all.
 const fn check(fault: Fault, ticks: u16) -> Check {
@@ -63,7 +63,7 @@ const fn check(fault: Fault, ticks: u16) -> Check {
 }
 
 /// A condition that also ends in a fault where it comes and goes: in more than one tick
-/// of six.
+/// of nine.
 const fn recurring(fault: Fault, ticks: u16) -> Check {
     Check {
         fault,
@@ -83,7 +83,7 @@ const TABLE: [Check; CHECKS] = [
     recurring(Fault::CurrentDisagreement, 2),
     check(Fault::SpeedMismatch, 1),
     recurring(Fault::CurrentMissing, 3),
-    recurring(Fault::TickIrregular, 3),
+    check(Fault::TickIrregular, 3),
     recurring(Fault::EnableStuckOff, 9),
     recurring(Fault::EncoderLost, 20),
     check(Fault::Overspeed, 20),
@@ -283,7 +283,7 @@ mod tests {
                 assert_eq!(run(holds(n)), None, "{n} after {n_ticks}");
             }
             if ticks > 1 {
-                // All is forgotten: at once, or five times as slowly as it came.
+                // All is forgotten: at once, or eight times as slowly as it came.
                 let forgotten = (TICK * ticks).div_ceil(check.forgets);
                 for _ in 0..forgotten {
                     assert_eq!(run(NONE), None);
@@ -300,7 +300,7 @@ mod tests {
             assert_eq!(plausibility.count(all, true, 1.0), Some(Fault::Overcurrent));
         }
         assert!(plausibility.remembers);
-        for _ in 0..3_000 {
+        for _ in 0..5_000 {
             plausibility.count(NONE, false, -1.0);
         }
         assert!(!plausibility.remembers);
@@ -308,22 +308,21 @@ mod tests {
 
     /// What comes and goes does not stay below the debounce for ever.
     #[test]
-    fn what_recurs_in_more_than_one_tick_of_six_is_a_fault() {
+    fn what_recurs_in_more_than_one_tick_of_nine_is_a_fault() {
         let recurring = [
             Fault::CurrentDisagreement,
             Fault::CurrentMissing,
-            Fault::TickIrregular,
             Fault::EnableStuckOff,
             Fault::EncoderLost,
         ];
         for (place, check) in TABLE.iter().enumerate() {
-            for period in 2..8 {
+            for period in 2..12 {
                 let mut plausibility = Plausibility::default();
-                let fault = (0..2_000).find_map(|n| {
+                let fault = (0..6_000).find_map(|n| {
                     let conditions = if n % period == 0 { holds(place) } else { NONE };
                     plausibility.count(conditions, false, -1.0)
                 });
-                let ends = check.most == TICK || recurring.contains(&check.fault) && period < 6;
+                let ends = check.most == TICK || recurring.contains(&check.fault) && period < 9;
                 assert_eq!(fault, ends.then_some(check.fault), "one in {period}");
             }
         }
@@ -346,7 +345,7 @@ mod tests {
     fn one_late_tick_in_five_is_too_many_and_one_in_six_is_not() {
         for (period, faults) in [(1, true), (2, true), (5, true), (6, false)] {
             let mut plausibility = Plausibility::default();
-            let fault = (0..2_000).find_map(|n| plausibility.count(NONE, n % period == 0, -1.0));
+            let fault = (0..6_000).find_map(|n| plausibility.count(NONE, n % period == 0, -1.0));
             let expected = faults.then_some(Fault::RenderingLate);
             assert_eq!(fault, expected, "one in {period}");
         }

@@ -13,7 +13,7 @@ use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::effects::{EffectChanges, Timing};
 use crepitus_model::render::position::Sight;
 use crepitus_model::render::ramp::Ramp;
-use crepitus_model::{Real, Settings, SettingsError, StepCoefficients, Validated};
+use crepitus_model::{Settings, SettingsError, StepCoefficients, Validated};
 use crepitus_protocol::measured::SUPPLY_SHARES;
 use crepitus_protocol::{DeviceSettings, Revision, TICK_S, ValueError, Values};
 
@@ -316,7 +316,7 @@ impl Preparation {
                     None
                 },
                 rad_per_count: reader.rad_per_count,
-                speed_limit_rad_s: single(speed_limit_rad_s(&next)),
+                speed_limit_rad_s: single(next.limits.speed_rad_s),
                 range: range(&next),
                 slow: slow(&next),
                 overload: OverloadPlan::new(next.motor.continuous_a, TICK_S),
@@ -341,12 +341,10 @@ fn silent(settings: &Validated<Settings>) -> Result<StepCoefficients<f32>, Setti
     StepCoefficients::new(&silent.validate()?, TICK_S)
 }
 
-/// The speed beyond which torque ends, rad/s: the one that is set, or that up to which the
-/// bridge holds a current of zero.
-fn speed_limit_rad_s(settings: &DeviceSettings) -> f64 {
-    let largest_v = f64::from(LARGEST_DUTY) * settings.current_loop.supply_v;
-    let held_rad_s = HELD_SHARE * largest_v / settings.joint_constant();
-    settings.limits.speed_rad_s.at_most(held_rad_s)
+/// The speed up to which a volt of the supply holds a current of zero, with a margin,
+/// rad/s/V.
+pub(crate) fn held_rad_s_per_volt(settings: &DeviceSettings) -> f64 {
+    HELD_SHARE * f64::from(LARGEST_DUTY) / settings.joint_constant()
 }
 
 fn range(settings: &DeviceSettings) -> RangePlan {
@@ -366,6 +364,8 @@ fn slow(settings: &DeviceSettings) -> SlowPlan {
             single(SUPPLY_SHARES.0 * supply_v),
             single(SUPPLY_SHARES.1 * supply_v),
         ),
+        nominal_v: single(supply_v),
+        held_rad_s_per_volt: single(held_rad_s_per_volt(settings)),
         joint: settings.joint_sensor.map(|sensor| JointSensorPlan {
             turns_per_count: single(settings.encoder.rad_per_count() / core::f64::consts::TAU),
             tolerance: single(sensor.tolerance_deg / 360.0),

@@ -44,6 +44,10 @@ impl SlowInput {
 /// Coefficients of the checks.
 #[derive(Clone, Copy, Debug)]
 pub struct SlowPlan {
+    /// The supply's voltage as it is set, V.
+    pub nominal_v: f32,
+    /// Speed up to which a volt of it holds a current of zero, rad/s/V.
+    pub held_rad_s_per_volt: f32,
     /// Least and largest voltage of the supply, V.
     pub supply_v: (f32, f32),
     /// The joint's sensor, if it is fitted.
@@ -77,6 +81,8 @@ pub struct SlowReadings {
 pub struct SlowChecks {
     plan: SlowPlan,
     readings: SlowReadings,
+    /// Speed up to which the supply holds a current of zero, rad/s.
+    held_rad_s: f32,
     missing_ticks: u32,
     /// Consecutive bad readings.
     low: u32,
@@ -96,6 +102,7 @@ impl SlowChecks {
         Self {
             plan: *plan,
             readings: SlowReadings::default(),
+            held_rad_s: plan.held_rad_s_per_volt * plan.nominal_v,
             missing_ticks: 0,
             low: 0,
             high: 0,
@@ -116,6 +123,12 @@ impl SlowChecks {
     pub fn zero(&mut self) {
         self.joint_zero = self.joint;
         self.deviations = (0.0, 0.0);
+    }
+
+    /// The speed up to which the supply holds a current of zero, rad/s. A motor that is faster
+    /// has a back-EMF beyond the largest voltage.
+    pub fn held_rad_s(&self) -> f32 {
+        self.held_rad_s
     }
 
     /// The last readings.
@@ -156,6 +169,9 @@ impl SlowChecks {
     fn supply(&mut self, volts: f32, is_live: bool) -> Option<Fault> {
         self.readings.supply_v = volts;
         let (least, most) = self.plan.supply_v;
+        // Duties are of the voltage that is set: with more than that no more is held.
+        let held_v = least.at_least(volts).at_most(self.plan.nominal_v);
+        self.held_rad_s = self.plan.held_rad_s_per_volt * held_v;
         let is_enough = volts >= least;
         let is_low = held(&mut self.low, !is_enough) >= LOW_READINGS;
         if held(&mut self.high, volts > most) >= HIGH_READINGS {
@@ -210,6 +226,8 @@ mod tests {
 
     fn checks() -> SlowChecks {
         SlowChecks::new(&SlowPlan {
+            nominal_v: 24.0,
+            held_rad_s_per_volt: 0.25,
             supply_v: (18.0, 30.0),
             joint: Some(JointSensorPlan {
                 turns_per_count: COUNTS,
@@ -242,6 +260,22 @@ mod tests {
 
     fn joint(turns: f32) -> SlowInput {
         SlowInput::JointTurns(turns)
+    }
+
+    #[test]
+    fn the_speed_that_is_held_follows_the_supply() {
+        let mut checks = checks();
+        assert_eq!(checks.held_rad_s(), 6.0);
+        for (volts, held_rad_s) in [
+            (20.0, 5.0),
+            (24.0, 6.0),
+            (29.0, 6.0),
+            (0.0, 4.5),
+            (f32::NAN, 4.5),
+        ] {
+            let _ = checks.tick(SlowInput::SupplyV(volts), 0, false);
+            assert_eq!(checks.held_rad_s(), held_rad_s, "{volts} V");
+        }
     }
 
     #[test]

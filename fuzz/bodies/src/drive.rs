@@ -356,8 +356,8 @@ impl Bench {
         let seen = heartbeat.seen_tick;
         let is_new = self.last_beat.is_none_or(|(start, number)| {
             let ahead = heartbeat.number.wrapping_sub(number);
-            let is_silent = (self.comms_start)
-                .is_none_or(|last| now.saturating_sub(last) >= HEARTBEAT_TICKS - 1);
+            let is_silent =
+                (self.comms_start).is_none_or(|last| now.saturating_sub(last) >= HEARTBEAT_TICKS);
             start != heartbeat.start || (1..128).contains(&ahead) || is_silent && ahead != 0
         });
         if is_new && seen <= now && now - seen <= STALE_TICKS {

@@ -34,10 +34,10 @@ pub struct Wire {
     /// What the sender has come to say in its blocks: a defect of its program, or
     /// of its memory.
     pub falsify: Option<fn(&mut Block)>,
-    /// The sender's program stands still, and its DMA sends the last frame again and
+    /// The sender's program stands still, and its DMA sends the last two frames again and
     /// again, each millisecond.
     pub repeats: bool,
-    last: Option<Frame>,
+    last: VecDeque<Frame>,
     /// The frame being sent, and the number of bytes sent.
     sending: Option<(Frame, usize)>,
     /// Frames after it.
@@ -54,7 +54,7 @@ impl Wire {
             injector: FaultInjector::new(seed),
             falsify: None,
             repeats: false,
-            last: None,
+            last: VecDeque::new(),
             sending: None,
             waiting: VecDeque::new(),
             on_the_way: VecDeque::new(),
@@ -82,10 +82,9 @@ impl Wire {
         mut receive: impl FnMut(u8),
     ) {
         if self.repeats {
-            if now.is_multiple_of(TICKS_PER_MS)
-                && let Some(frame) = &self.last
-            {
-                self.on_the_way.push_back((now, frame.to_vec()));
+            if now.is_multiple_of(TICKS_PER_MS) {
+                let again = self.last.iter().map(|frame| (now, frame.to_vec()));
+                self.on_the_way.extend(again);
             }
             self.arrive(now, &mut receive);
             return;
@@ -111,7 +110,8 @@ impl Wire {
                 self.sending = Some((frame, sent + part));
             } else {
                 let frame = falsified(frame, self.falsify);
-                self.last = Some(frame.clone());
+                self.last.truncate(1);
+                self.last.push_front(frame.clone());
                 let on_the_way = &mut self.on_the_way;
                 self.injector.pass(&frame, |late, bytes| {
                     on_the_way.push_back((now + late, bytes.to_vec()));

@@ -8,6 +8,7 @@ use crate::drive::exchange::Rendered;
 use crate::drive::plausibility::Observation;
 use crate::drive::safety::Permit;
 use crate::drive::sampler::LOST_TICKS;
+use crepitus_model::Real;
 use crepitus_protocol::Fault;
 use crepitus_protocol::counters::DriveCounter;
 
@@ -170,9 +171,8 @@ impl Command {
         observation: &Observation,
         counters: &Counters,
     ) -> Permit {
-        let fault = self
-            .plausibility
-            .check(observation, &self.motor, self.speed_limit_rad_s);
+        let limit_rad_s = (self.speed_limit_rad_s).at_most(self.slow_checks.held_rad_s());
+        let fault = (self.plausibility).check(observation, &self.motor, limit_rad_s);
         match fault {
             None => permit,
             Some(fault) => {

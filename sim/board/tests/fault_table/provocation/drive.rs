@@ -73,12 +73,15 @@ pub(super) fn comms_silent() -> Vec<Case> {
             mend_down,
         )
         .settled(heartbeat),
-        case(
-            "the last heartbeat comes again and again",
-            |host, _| board(host).down().repeats = true,
-            |host| board(host).down().repeats = false,
-        )
-        .settled(heartbeat),
+        Case {
+            phases: 0..20,
+            ..case(
+                "the last two heartbeats come again and again",
+                |host, _| board(host).down().repeats = true,
+                |host| board(host).down().repeats = false,
+            )
+            .settled(heartbeat)
+        },
         case(
             "comms hangs",
             |host, since| once(since, host, |board| board.hang(Comms)),
