@@ -96,6 +96,41 @@ fn everything_works_while_another_program_is_armed() {
     assert_eq!(stdout(&served.run(&["stop"])), "stopped\n");
 }
 
+/// A program that was started without a runtime folder, as by `cron`, and one with: they meet.
+#[test]
+fn programs_with_different_environments_meet() {
+    let served = Served::new();
+    let temporary = served.home.path().join("temporary");
+    fs::create_dir(&temporary).unwrap();
+    let port = fs::canonicalize(served.port()).unwrap();
+    let device = ["--device", port.to_str().unwrap()];
+    let mut arm = served.command(&["arm", "--zero", "--for", "60s"]);
+    let mut arm = arm
+        .args(device)
+        .env("TMPDIR", &temporary)
+        .env_remove("XDG_RUNTIME_DIR")
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let with_folder = |arguments: &[&str]| {
+        let mut command = served.command(arguments);
+        command.args(device).env("TMPDIR", &temporary);
+        command.output().unwrap()
+    };
+    until("armed", || {
+        stdout(&with_folder(&["info"])).contains("armed by")
+            || stdout(&with_folder(&["info", "--json"])).contains("\"state\": \"armed\"")
+    });
+    let stopped = with_folder(&["stop"]);
+    assert!(stopped.status.success(), "{}", stderr(&stopped));
+    assert!(
+        stdout(&stopped).contains("had armed it"),
+        "{}",
+        stdout(&stopped)
+    );
+    assert!(!ended(&mut arm).success());
+}
+
 #[test]
 fn disarming_by_force_is_for_everybody() {
     let served = Served::new();

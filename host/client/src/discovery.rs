@@ -11,7 +11,7 @@ mod folder;
 mod name;
 
 use crepitus_protocol::usb::{PRODUCT, PRODUCT_ID, VENDOR_ID};
-pub use folder::{make_user_folder, user_folder};
+pub use folder::{make_temporary_user_folder, make_user_folder, user_folder, user_folders};
 pub use name::ServedName;
 use serialport::{SerialPortType, UsbPortInfo};
 use std::fs;

@@ -239,9 +239,21 @@ impl<T: Transport> Client<T> {
                 if self.loss.is_none() {
                     self.lease = before;
                 }
+                if before != Lease::Held && matches!(error, Error::NoAnswer { .. }) {
+                    self.withdraw();
+                }
                 Err(error)
             }
         }
+    }
+
+    /// Sends what ends arming, behind a request to arm that may yet be on its way; nobody waits for
+    /// the answer.
+    fn withdraw(&mut self) {
+        let number = self.next_number();
+        let request = self.numbered(number, Operation::Disarm);
+        // Without a connection there is no way for either.
+        let _ = self.wire.request(&request);
     }
 
     /// Turns torque off and releases the lease.

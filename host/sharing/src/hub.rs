@@ -20,14 +20,19 @@ use interprocess::local_socket::{Listener, Stream};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read, Write};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::thread::{self, Builder, JoinHandle};
+use std::time::{Duration, Instant};
 
 /// How often a thread that waits for bytes looks whether the hub has ended.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
+
+/// The longest pause of the thread that receives. After a longer one this program was stopped,
+/// and what has waited for it meanwhile is too old to be sent: those who have sent it know
+/// no longer of it. Less than the timeout of a request.
+const STOPPED_MS: u64 = 400;
 
 /// Frames on their way to the port.
 const QUEUE: usize = 64;
@@ -48,6 +53,9 @@ struct State {
     members: Mutex<BTreeMap<u64, Member>>,
     to_port: SyncSender<Chunk>,
     is_over: AtomicBool,
+    began: Instant,
+    /// When the thread that receives was last seen at work, ms from then.
+    at_work_ms: AtomicU64,
 }
 
 impl Hub {
@@ -67,6 +75,8 @@ impl Hub {
             members: Mutex::default(),
             to_port,
             is_over: AtomicBool::new(false),
+            began: Instant::now(),
+            at_work_ms: AtomicU64::new(0),
         });
         let (receiver, sender) = ports;
         let [for_accept, for_send, for_receive] = [(); 3].map(|()| state.clone());
@@ -108,6 +118,16 @@ impl State {
         self.is_over.load(Ordering::Acquire)
     }
 
+    /// Whether this program was stopped, and goes on.
+    fn was_stopped(&self) -> bool {
+        let at_work_ms = self.at_work_ms.load(Ordering::Acquire);
+        self.now_ms().saturating_sub(at_work_ms) > STOPPED_MS
+    }
+
+    fn now_ms(&self) -> u64 {
+        u64::try_from(self.began.elapsed().as_millis()).unwrap_or(u64::MAX)
+    }
+
     /// Ends all threads: those of programs when their queues close.
     fn end(&self) {
         self.is_over.store(true, Ordering::Release);
@@ -122,7 +142,8 @@ impl State {
     /// Bytes of the port to all programs.
     fn receive_all(&self, mut port: impl Transport) {
         let (mut frames, mut buffer) = (Frames::default(), [0; 4_096]);
-        while !self.is_over() {
+        while !self.is_over() && !self.was_stopped() {
+            self.at_work_ms.store(self.now_ms(), Ordering::Release);
             let Ok(count) = port.receive(&mut buffer, LOOK_EVERY) else {
                 return;
             };
@@ -176,27 +197,34 @@ impl State {
         let for_writing = stream.clone();
         let (outbox, inbox) = sync_channel(OUTBOX);
         self.members().insert(number, Member::new(outbox));
-        thread::spawn(move || write_all(&for_writing, &inbox));
+        let writer = Builder::new().spawn(move || write_all(&for_writing, &inbox));
         let state = self.clone();
-        thread::spawn(move || {
+        let reader = Builder::new().spawn(move || {
             state.read_all(number, &stream);
             state.dismiss(number);
         });
+        if writer.is_err() || reader.is_err() {
+            // As many threads as the system gives: this program is not served, the others are.
+            self.dismiss(number);
+        }
     }
 
     /// Frames of a program to the port, until it closes its end.
     fn read_all(&self, number: u64, mut stream: &Stream) {
         let (mut frames, mut buffer) = (Frames::default(), [0; 4_096]);
         while let Ok(count @ 1..) = stream.read(&mut buffer) {
+            if self.was_stopped() {
+                self.end();
+            }
+            if self.is_over() {
+                return;
+            }
             frames.push(buffer.get(..count).unwrap_or_default(), |frame| {
                 if self.is_for_device(number, frame) {
                     // Fails only when the hub ends.
                     let _ = self.to_port.send(Chunk::from(frame));
                 }
             });
-            if self.is_over() {
-                return;
-            }
         }
     }
 
@@ -271,5 +299,76 @@ fn write_all(mut stream: &Stream, inbox: &Receiver<Chunk>) {
     if let Some(frame) = Note::Leaving.frame() {
         // A program that does not hear it has gone.
         let _ = stream.write_all(&frame);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interprocess::local_socket::traits::Stream as _;
+    use interprocess::local_socket::{GenericFilePath, ListenerOptions, ToFsName};
+
+    /// A port that keeps the thread that receives for a while, as a signal would keep all.
+    struct Pausing {
+        pause: Duration,
+        sent: Arc<Mutex<Vec<u8>>>,
+    }
+
+    impl Transport for Pausing {
+        fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
+            self.sent.lock().unwrap().extend(bytes);
+            Ok(())
+        }
+
+        fn receive(&mut self, _: &mut [u8], _: Duration) -> Result<usize, TransportError> {
+            thread::sleep(self.pause);
+            Ok(0)
+        }
+
+        fn now(&self) -> Duration {
+            Duration::ZERO
+        }
+
+        fn wait(&mut self, _: Duration) {}
+
+        fn reopen(&mut self) -> Result<(), TransportError> {
+            Ok(())
+        }
+
+        fn name(&self) -> String {
+            "port".to_owned()
+        }
+    }
+
+    /// What has waited for a program that was stopped is not sent when it goes on: a request to
+    /// arm would arm a device of which nobody thinks any more.
+    #[test]
+    fn what_has_waited_for_a_program_that_was_stopped_is_not_sent() {
+        const FRAME: &[u8] = b"\x03ab\0";
+        for (pause_ms, is_sent) in [(10, true), (900, false)] {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("socket");
+            let name = || path.as_path().to_fs_name::<GenericFilePath>().unwrap();
+            let listener = ListenerOptions::new().name(name()).create_sync().unwrap();
+            let lock = File::create(folder.path().join("lock")).unwrap();
+            let sent = Arc::new(Mutex::new(Vec::new()));
+            let port = || Pausing {
+                pause: Duration::from_millis(pause_ms),
+                sent: sent.clone(),
+            };
+            let waking = path.clone();
+            let wake = move || {
+                let name = waking.as_path().to_fs_name::<GenericFilePath>();
+                let _ = name.and_then(Stream::connect);
+            };
+            let hub = Hub::start((port(), port()), listener, wake, lock);
+            let mut stream = &Stream::connect(name()).unwrap();
+            thread::sleep(Duration::from_millis(600));
+            stream.write_all(FRAME).unwrap();
+            thread::sleep(Duration::from_millis(600));
+            assert_eq!(hub.is_over(), !is_sent, "{pause_ms} ms");
+            let sent = sent.lock().unwrap().clone();
+            assert_eq!(sent.ends_with(FRAME), is_sent, "{pause_ms} ms: {sent:?}");
+        }
     }
 }

@@ -9,6 +9,9 @@ use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
+/// Timeout of sending: longer than a port takes nothing.
+const SEND: Duration = Duration::from_millis(500);
+
 /// The connection of a program to the hub.
 #[derive(Debug)]
 pub(crate) struct Link {
@@ -32,9 +35,10 @@ impl Link {
     /// Sends bytes.
     ///
     /// # Errors
-    /// The hub has gone.
+    /// The hub has gone, or was stopped: it takes nothing, and the last frame may be torn.
     pub(crate) fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.stream.set_nonblocking(false)?;
+        self.stream.set_send_timeout(Some(SEND))?;
         self.stream.write_all(bytes)
     }
 
@@ -89,4 +93,28 @@ fn note_of(frame: &[u8]) -> Option<Note> {
         Some(Ok(body)) => Note::of(&body),
         _ => None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interprocess::local_socket::traits::ListenerExt;
+    use interprocess::local_socket::{GenericFilePath, ListenerOptions, ToFsName};
+    use std::time::Instant;
+
+    /// A hub that was stopped takes what the system keeps for it, and no more.
+    #[test]
+    fn sending_to_a_program_that_was_stopped_ends() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("socket");
+        let name = || path.as_path().to_fs_name::<GenericFilePath>().unwrap();
+        let listener = ListenerOptions::new().name(name()).create_sync().unwrap();
+        let mut link = Link::new(Stream::connect(name()).unwrap());
+        let stopped = listener.incoming().next().unwrap().unwrap();
+        let begun = Instant::now();
+        let error = (0..1_000_000).find_map(|_| link.send(&[0; 1_000]).err());
+        assert!(error.is_some());
+        assert!(begun.elapsed() < Duration::from_secs(5));
+        drop(stopped);
+    }
 }

@@ -6,6 +6,12 @@ use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// In the user's folder.
+const FOLDER: &str = "shared";
+
+/// The most bytes that the path of a socket has, without its ending: systems allow 104 to 108.
+const LONGEST: usize = 95;
+
 /// Socket and lock of a device.
 #[derive(Clone, Debug)]
 pub(crate) struct Place {
@@ -19,13 +25,31 @@ pub(crate) struct Place {
 impl Place {
     /// The place of the device at this port.
     pub(crate) fn of(port: &str) -> io::Result<Self> {
-        let folder = discovery::make_user_folder()?.join("shared");
-        fs::create_dir_all(&folder)?;
         let name = name_of(port);
-        Ok(Self {
+        let mut folder = discovery::make_user_folder()?.join(FOLDER);
+        if folder.as_os_str().len() + name.len() > LONGEST {
+            folder = discovery::make_temporary_user_folder()?.join(FOLDER);
+        }
+        fs::create_dir_all(&folder)?;
+        Ok(Self::in_folder(&folder, &name))
+    }
+
+    /// Where programs that were started with another environment meet: from a cron job, or as
+    /// another user that became this one.
+    pub(crate) fn others(port: &str) -> Vec<Self> {
+        let name = name_of(port);
+        let folders = discovery::user_folders().into_iter();
+        folders
+            .map(|folder| Self::in_folder(&folder.join(FOLDER), &name))
+            .filter(|place| place.socket.exists())
+            .collect()
+    }
+
+    fn in_folder(folder: &Path, name: &str) -> Self {
+        Self {
             socket: folder.join(format!("{name}.socket")),
             lock: folder.join(format!("{name}.lock")),
-        })
+        }
     }
 
     /// The lock, unless another program has it.
@@ -43,7 +67,7 @@ impl Place {
     }
 }
 
-/// The device's serial number; of a port that is not on USB, its path.
+/// The device's serial number, and the path of its port.
 fn name_of(port: &str) -> String {
     let resolved = |port: &str| fs::canonicalize(port).unwrap_or_else(|_| PathBuf::from(port));
     let path = resolved(port);
@@ -52,7 +76,16 @@ fn name_of(port: &str) -> String {
         DeviceKind::Usb { serial_number } if resolved(&device.port) == path => serial_number,
         _ => None,
     });
-    file_name(&serial_number.map_or(path, PathBuf::from))
+    named(serial_number.as_deref(), &path)
+}
+
+/// Serial numbers are not always different, and some devices have none.
+fn named(serial_number: Option<&str>, path: &Path) -> String {
+    let path = file_name(path);
+    match serial_number.map(|number| file_name(Path::new(number))) {
+        Some(number) if !number.is_empty() => format!("{number}-{path}"),
+        _ => path,
+    }
 }
 
 /// A path as the name of a file: letters, digits, dots, and dashes for all else.
@@ -71,6 +104,17 @@ fn file_name(path: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn two_devices_meet_at_two_places() {
+        let ports = [Path::new("/dev/ttyACM0"), Path::new("/dev/ttyACM1")];
+        for number in [None, Some(""), Some("//"), Some("SIM-COMMS-01")] {
+            let [one, other] = ports.map(|port| named(number, port));
+            assert_ne!(one, other);
+            assert!(!one.starts_with(['.', '-']), "{one}");
+        }
+        assert_eq!(named(Some("A 1"), ports[0]), "A-1-dev-ttyACM0");
+    }
 
     #[test]
     fn names_are_plain_and_the_same_by_any_path() {

@@ -109,23 +109,15 @@ impl Shared {
             });
         }
         let place = Place::of(&self.port).map_err(|error| self.cannot_meet(&error))?;
+        for other in Place::others(&self.port) {
+            if other.socket != place.socket && self.join(&other)? {
+                return Ok(());
+            }
+        }
         let end = Instant::now() + ATTACH;
         loop {
-            if let Ok(stream) = socket(&place.socket).and_then(Stream::connect) {
-                match self.greet(Link::new(stream)) {
-                    Ok(link) => {
-                        self.link = Some(link);
-                        return Ok(());
-                    }
-                    Err(error) if error.kind() == ErrorKind::TimedOut => {
-                        return Err(TransportError::Hangs {
-                            port: self.port.clone(),
-                            holder: crepitus_client::holder_of(&self.port),
-                        });
-                    }
-                    // It has just ended.
-                    Err(_) => {}
-                }
+            if self.join(&place)? {
+                return Ok(());
             }
             match place.lock() {
                 Ok(Some(lock)) => {
@@ -149,6 +141,25 @@ impl Shared {
                 }
                 Err(error) => return Err(self.cannot_meet(&error)),
             }
+        }
+    }
+
+    /// Connects to the hub at this place; false if there is none.
+    fn join(&mut self, place: &Place) -> Result<bool, TransportError> {
+        let Ok(stream) = socket(&place.socket).and_then(Stream::connect) else {
+            return Ok(false);
+        };
+        match self.greet(Link::new(stream)) {
+            Ok(link) => {
+                self.link = Some(link);
+                Ok(true)
+            }
+            Err(error) if error.kind() == ErrorKind::TimedOut => Err(TransportError::Hangs {
+                port: self.port.clone(),
+                holder: crepitus_client::holder_of(&self.port),
+            }),
+            // It has just ended.
+            Err(_) => Ok(false),
         }
     }
 

@@ -4,7 +4,7 @@ use crate::safe_text::{message, visible};
 use crepitus_scene::SceneError;
 use serde_json::{Map, Value, json};
 use std::fmt::Display;
-use std::io;
+use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -82,7 +82,8 @@ impl Failure {
             matches!(print_json(&told), Ok(()) | Err(Self::NoReader))
         };
         if !printed {
-            eprintln!("error: {text}");
+            // Without anybody who reads, the exit code tells.
+            let _ = writeln!(io::stderr(), "error: {text}");
         }
         ExitCode::from(code)
     }
@@ -90,7 +91,7 @@ impl Failure {
 
 /// Prints a warning to stderr.
 pub(crate) fn warn(warning: impl Display) {
-    eprintln!("warning: {}", message(&warning.to_string()));
+    let _ = writeln!(io::stderr(), "warning: {}", message(&warning.to_string()));
 }
 
 /// Writes text to stdout; a closed reader is a failure, not a panic.

@@ -12,6 +12,7 @@ use crepitus_client::{Begin, Client, Event};
 use crepitus_connection::device_text;
 use crepitus_protocol::State;
 use crepitus_protocol::telemetry::Block;
+use std::io::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::Duration;
 
@@ -48,7 +49,8 @@ pub(crate) trait Follower {
 
     /// Tells the user that something has happened.
     fn tell(&mut self, text: &str) {
-        eprintln!("{text}");
+        // Without anybody who reads, what is done goes on.
+        let _ = writeln!(io::stderr(), "{text}");
     }
 }
 

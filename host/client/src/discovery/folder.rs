@@ -5,13 +5,62 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// `crepitus` in the user's runtime folder (`XDG_RUNTIME_DIR`), or else
-/// `crepitus-` and the user's number in the temporary folder.
+/// `crepitus` in the user's runtime folder (`XDG_RUNTIME_DIR`) if it is there and this user's,
+/// or else `crepitus-` and the user's number in the temporary folder.
 pub fn user_folder() -> PathBuf {
     match std::env::var_os("XDG_RUNTIME_DIR") {
-        Some(folder) if !folder.is_empty() => PathBuf::from(folder).join("crepitus"),
-        _ => std::env::temp_dir().join(own_name()),
+        Some(folder) if is_own(Path::new(&folder)) => PathBuf::from(folder).join("crepitus"),
+        _ => temporary(),
     }
+}
+
+fn temporary() -> PathBuf {
+    std::env::temp_dir().join(own_name())
+}
+
+/// Every folder that may be this user's with some environment, as far as it is there and
+/// nobody else's.
+pub fn user_folders() -> Vec<PathBuf> {
+    let mut folders = vec![user_folder()];
+    folders.extend(runtime().map(|folder| folder.join("crepitus")));
+    folders.push(temporary());
+    folders.dedup();
+    folders.retain(|folder| is_own(folder));
+    folders
+}
+
+/// The one in the temporary folder, made if it is not there: its path is short.
+///
+/// # Errors
+/// As [`make_user_folder`].
+pub fn make_temporary_user_folder() -> io::Result<PathBuf> {
+    let folder = temporary();
+    make_private(&folder)?;
+    Ok(folder)
+}
+
+/// The runtime folder of a login, whatever the environment says.
+#[cfg(unix)]
+fn runtime() -> Option<PathBuf> {
+    let number = rustix::process::geteuid().as_raw();
+    Some(PathBuf::from(format!("/run/user/{number}")))
+}
+
+#[cfg(not(unix))]
+fn runtime() -> Option<PathBuf> {
+    None
+}
+
+#[cfg(unix)]
+fn is_own(folder: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let own = rustix::process::geteuid().as_raw();
+    fs::symlink_metadata(folder).is_ok_and(|found| found.is_dir() && found.uid() == own)
+}
+
+#[cfg(not(unix))]
+fn is_own(folder: &Path) -> bool {
+    folder.is_dir()
 }
 
 /// [`user_folder`], made if it is not there.

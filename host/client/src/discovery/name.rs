@@ -5,7 +5,7 @@
 //! may have given the pty to somebody's terminal since.
 
 use super::folder::make_user_folder;
-use std::fs::{File, TryLockError};
+use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
@@ -37,7 +37,14 @@ impl ServedName {
             .open(lock_of(&link))?;
         for _ in 0..TRIES {
             match lock.try_lock() {
-                Ok(()) => return Ok(Self { link, _lock: lock }),
+                Ok(()) => {
+                    // One that was left may lead to a terminal that is somebody else's by now, and
+                    // from here on the lock says that it is ours.
+                    if fs::read_link(&link).is_ok_and(|target| target.starts_with("/dev")) {
+                        fs::remove_file(&link)?;
+                    }
+                    return Ok(Self { link, _lock: lock });
+                }
                 Err(TryLockError::WouldBlock) => sleep(Duration::from_millis(5)),
                 Err(TryLockError::Error(error)) => return Err(error),
             }

@@ -10,7 +10,7 @@ use crate::line::{Line, connect};
 use clap::Args;
 use crepitus_client::Client;
 use crepitus_protocol::telemetry::Block;
-use std::io::{IsTerminal, stdin};
+use std::io::{IsTerminal, Write, stderr, stdin};
 use std::time::Duration;
 
 /// Turn torque on while this command runs.
@@ -62,7 +62,8 @@ impl Follower for UntilKey {
             } else {
                 "Ctrl-C"
             };
-            eprintln!("{is_armed}: {how} disarms");
+            // Without anybody who reads, too.
+            let _ = writeln!(stderr(), "{is_armed}: {how} disarms");
             Keys::listen()
         });
         Ok(keys.is_active() && keys.pressed())
