@@ -68,6 +68,8 @@ pub(crate) struct Watch {
     /// Sequence number of the pending request.
     pub(crate) asked: Option<u32>,
     pub(crate) asked_at: Duration,
+    /// Requests in a row without a reply.
+    pub(crate) unanswered: u8,
     /// Time of an additional request.
     pub(crate) due_at: Option<Duration>,
     pub(crate) known: Option<Status>,

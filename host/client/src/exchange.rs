@@ -231,7 +231,7 @@ impl<T: Transport> Client<T> {
             unanswered: self.pending_request,
         });
         self.lease = Lease::None;
-        self.watch.asked = None;
+        (self.watch.asked, self.watch.unanswered) = (None, 0);
         self.events.push_back(Event::Lost(error.clone()));
         error.into()
     }

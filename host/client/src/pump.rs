@@ -4,7 +4,7 @@ use crate::accounting::Taken;
 use crate::client::{Client, Lease};
 use crate::errors::Error;
 use crate::event::{Arrival, Event, StateChange};
-use crate::transport::Transport;
+use crate::transport::{Transport, TransportError};
 use crate::wire::Incoming;
 use crepitus_protocol::State;
 use crepitus_protocol::host::{Answer, Operation, Refusal, Status};
@@ -24,6 +24,10 @@ const WATCH_EVERY: Duration = Duration::from_millis(100);
 /// Delay of another status request after a change: each controller receives the
 /// other's cause a few milliseconds late.
 const SETTLES_IN: Duration = Duration::from_millis(20);
+
+/// Unanswered requests after which whoever has armed the device takes the connection for lost:
+/// a second. Torque has ended long before, and the device saves nothing while armed.
+const MOST_UNANSWERED: u8 = 10;
 
 /// Timeout without a block that is reported as silence.
 const SILENCE: Duration = Duration::from_millis(500);
@@ -111,6 +115,13 @@ impl<T: Transport> Client<T> {
         if !is_wanted {
             return Ok(());
         }
+        if self.watch.asked.is_some() {
+            self.watch.unanswered = self.watch.unanswered.saturating_add(1);
+        }
+        if self.lease == Lease::Held && self.watch.unanswered >= MOST_UNANSWERED {
+            let (port, detail) = (self.port(), "nothing answers any more".to_owned());
+            return Err(self.failed(TransportError::Lost { port, detail }));
+        }
         let number = self.next_number();
         (self.watch.asked, self.watch.asked_at) = (Some(number), now);
         self.watch.due_at = None;
@@ -143,7 +154,7 @@ impl<T: Transport> Client<T> {
                 None
             }
             Incoming::Reply(reply) if self.watch.asked == Some(reply.number) => {
-                self.watch.asked = None;
+                (self.watch.asked, self.watch.unanswered) = (None, 0);
                 match reply.answer {
                     Ok(Answer::Status(status)) => self.observe(&status),
                     Err(Refusal::NotOpen) => {

@@ -68,7 +68,7 @@ impl<T: Transport> Client<T> {
         });
         loop {
             self.lease = Lease::None;
-            self.watch.asked = None;
+            (self.watch.asked, self.watch.unanswered) = (None, 0);
             let result = self.try_again(loss);
             // The caller knows already that the connection was lost.
             self.events.retain(|event| !matches!(event, Event::Lost(_)));

@@ -22,7 +22,7 @@ fn temporary() -> PathBuf {
 /// nobody else's.
 pub fn user_folders() -> Vec<PathBuf> {
     let mut folders = vec![user_folder()];
-    folders.extend(runtime().map(|folder| folder.join("crepitus")));
+    folders.push(runtime().join("crepitus"));
     folders.push(temporary());
     folders.dedup();
     folders.retain(|folder| is_own(folder));
@@ -39,16 +39,17 @@ pub fn make_temporary_user_folder() -> io::Result<PathBuf> {
     Ok(folder)
 }
 
-/// The runtime folder of a login, whatever the environment says.
+/// The runtime folder of a login, whatever the environment says; where there is none, one that
+/// does not exist.
 #[cfg(unix)]
-fn runtime() -> Option<PathBuf> {
+fn runtime() -> PathBuf {
     let number = rustix::process::geteuid().as_raw();
-    Some(PathBuf::from(format!("/run/user/{number}")))
+    PathBuf::from(format!("/run/user/{number}"))
 }
 
 #[cfg(not(unix))]
-fn runtime() -> Option<PathBuf> {
-    None
+fn runtime() -> PathBuf {
+    temporary()
 }
 
 #[cfg(unix)]
