@@ -11,8 +11,10 @@ use crepitus_scene::{Overrides, Scene};
 use crepitus_usb::pty::Pty;
 use std::fs;
 use std::io::{BufRead, BufReader};
+use std::os::unix::fs::{MetadataExt, chown};
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{JoinHandle, sleep};
@@ -129,6 +131,66 @@ fn programs_with_different_environments_meet() {
         stdout(&stopped)
     );
     assert!(!ended(&mut arm).success());
+}
+
+/// As an ordinary user: root may open what nobody else may.
+#[test]
+fn the_others_go_on_when_the_first_program_of_a_user_is_killed() {
+    const NOBODY: u32 = 65_534;
+    let is_root = fs::metadata("/proc/self").unwrap().uid() == 0;
+    let home = tempfile::tempdir().unwrap();
+    // One that this user can read.
+    let program = home.path().join("crepitus");
+    fs::copy(env!("CARGO_BIN_EXE_crepitus"), &program).unwrap();
+    if is_root {
+        chown(home.path(), Some(NOBODY), Some(NOBODY)).unwrap();
+    }
+    let command = |arguments: &[&str]| {
+        let mut command = Command::new(&program);
+        command.args(arguments).env("XDG_RUNTIME_DIR", home.path());
+        command.current_dir(home.path()).stderr(Stdio::piped());
+        if is_root {
+            command.uid(NOBODY).gid(NOBODY);
+        }
+        command
+    };
+    let mut simulator = command(&["serve-sim", "--name", "knee"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    BufReader::new(simulator.stdout.as_mut().unwrap())
+        .read_line(&mut line)
+        .unwrap();
+    assert!(line.contains("is served as"), "{line}");
+    let count = || {
+        let output = command(&["info", "--json"]).output().unwrap();
+        assert!(output.status.success(), "{}", stderr(&output));
+    };
+    for _ in 0..3 {
+        let mut first = command(&["stream", "--for", "60s"])
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(first.stdout.as_mut().unwrap())
+            .read_line(&mut line)
+            .unwrap();
+        let mut second = command(&["record", "a", "--for", "2s"]).spawn().unwrap();
+        sleep(HALF_A_SECOND);
+        signal(&first, "-KILL");
+        first.wait().unwrap();
+        assert!(ended(&mut second).success());
+        count();
+        assert!(
+            simulator.try_wait().unwrap().is_none(),
+            "the simulator has ended"
+        );
+        fs::remove_file(home.path().join("a")).ok();
+        fs::remove_file(home.path().join("a.parquet")).ok();
+    }
+    simulator.kill().unwrap();
+    simulator.wait().unwrap();
 }
 
 #[test]

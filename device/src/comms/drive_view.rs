@@ -9,9 +9,6 @@ use crepitus_protocol::{Revision, State, ValueError};
 /// Timeout: without a block for this long the drive counts as silent, ms.
 pub const SILENT_MS: u64 = 5;
 
-/// After this long without a new block an older one is of another start of the drive, ms.
-const RESTART_MS: u64 = 100;
-
 /// How a block continues the stream before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Continuity {
@@ -56,14 +53,7 @@ impl DriveView {
                 *self = Self::default();
                 Continuity::Restarted
             }
-            Some(_) if block.first_tick < self.next_tick && !self.is_long_silent(now_ms) => {
-                return Continuity::Stale;
-            }
-            // Another start whose lowest bits are the same.
-            Some(_) if block.first_tick < self.next_tick => {
-                *self = Self::default();
-                Continuity::Restarted
-            }
+            Some(_) if block.first_tick < self.next_tick => return Continuity::Stale,
             Some(_) => {
                 let missing = block.first_tick.saturating_sub(self.next_tick);
                 let dropped = block.dropped.wrapping_sub(self.dropped);
@@ -104,12 +94,6 @@ impl DriveView {
     /// ever received.
     pub fn start(&self) -> Option<u8> {
         self.start
-    }
-
-    /// Whether no block was new for so long that an old one is not a late one.
-    fn is_long_silent(&self, now_ms: u64) -> bool {
-        self.last_block_ms
-            .is_some_and(|last_ms| now_ms.saturating_sub(last_ms) >= RESTART_MS)
     }
 
     /// Whether blocks arrive within the timeout.
@@ -213,17 +197,6 @@ mod tests {
             Continuity::Stale
         );
         assert!(view.is_present(10) && !view.is_present(11));
-        // A drive whose next start has the same lowest bits: after a while it is one.
-        let mut other = view;
-        assert_eq!(other.receive_block(&block(0, 0, 1), 105), Continuity::Stale);
-        assert_eq!(
-            other.receive_block(&block(20, 0, 1), 106),
-            Continuity::Restarted
-        );
-        assert_eq!(
-            other.receive_block(&block(40, 0, 1), 107),
-            Continuity::Next { lost: 0 }
-        );
         assert_eq!(view.seen_tick(), 5_120);
     }
 

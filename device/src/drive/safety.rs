@@ -275,3 +275,34 @@ impl Safety {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the self-test found is still there behind a fault that is more urgent.
+    #[test]
+    fn a_defect_stays_until_the_next_start() {
+        for self_test in [SelfTest::ImageBroken, SelfTest::OptionBytesWrong] {
+            let counters = Counters::default();
+            let mut safety = Safety::new(ResetCause::Power, self_test);
+            let defect = safety.fault();
+            let seen = Seen {
+                raw_a: None,
+                line_is_on: true,
+                comms_line_is_on: false,
+                count: 0,
+            };
+            for now in 0..20 {
+                assert_eq!(safety.tick(now, &seen, &counters), Permit::Nothing);
+            }
+            assert_eq!(safety.fault(), Some(Fault::EnableStuckOn));
+            assert!(safety.clear(true).is_err());
+            let code = defect.expect("a fault").code();
+            for _ in 0..2 {
+                assert_eq!(safety.clear(false), Err(DriveRefusal::Faulted { code }));
+                assert_eq!((safety.state(), safety.fault()), (State::Faulted, defect));
+            }
+        }
+    }
+}

@@ -165,10 +165,29 @@ fn closed() -> io::Error {
 }
 
 fn open(path: &str) -> Result<Box<dyn SerialPort>, TransportError> {
-    serialport::new(path, BAUD_RATE)
+    #[cfg(target_os = "linux")]
+    let own = pseudo_terminal(path);
+    let port = serialport::new(path, BAUD_RATE)
         .timeout(SEND_PATIENCE)
         .open()
-        .map_err(|error| why(path, &error))
+        .map_err(|error| why(path, &error))?;
+    // The library also locks the port, which ends with this program. What the terminal itself
+    // was told would not: after a SIGKILL nobody but root could open it, the simulator included.
+    #[cfg(target_os = "linux")]
+    if let Some(own) = own {
+        let _ = rustix::termios::ioctl_tiocnxcl(own);
+    }
+    Ok(port)
+}
+
+/// A pseudo terminal, once more: opened before it is exclusive.
+#[cfg(target_os = "linux")]
+fn pseudo_terminal(path: &str) -> Option<std::os::fd::OwnedFd> {
+    use rustix::fs::{Mode, OFlags};
+    let path = std::fs::canonicalize(path).ok()?;
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    let is_one = path.starts_with("/dev/pts");
+    is_one.then(|| rustix::fs::open(path, flags, Mode::empty()).ok())?
 }
 
 /// Converts an error of opening a port.
