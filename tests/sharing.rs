@@ -177,7 +177,7 @@ fn the_others_go_on_when_the_first_program_of_a_user_is_killed() {
             .read_line(&mut line)
             .unwrap();
         let mut second = command(&["record", "a", "--for", "2s"]).spawn().unwrap();
-        sleep(HALF_A_SECOND);
+        sleep(Duration::from_millis(500));
         signal(&first, "-KILL");
         first.wait().unwrap();
         assert!(ended(&mut second).success());

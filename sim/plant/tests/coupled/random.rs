@@ -161,7 +161,7 @@ fn motor() -> impl Strategy<Value = Numbers> {
         ("bandwidth_hz", decades(100.0, 2000.0)),
         ("resistance_ohm", decades(0.3, 3.0)),
         ("inductance_h", decades(1e-4, 1e-3)),
-        ("supply_v", decades(5.0, 48.0)),
+        ("supply_v", decades(5.0, 40.0)),
     ])
 }
 
