@@ -9,7 +9,7 @@ use crepitus_device::{Comms, Drive};
 use crepitus_protocol::counters::DRIVE_COUNT;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::frame::{encode_body, encode_bytes};
-use crepitus_protocol::host::{Answer, Operation, Reply};
+use crepitus_protocol::host::{Answer, Operation, Refusal, Reply};
 use crepitus_protocol::management::{self, Action, ManagementRequest};
 use crepitus_protocol::{Decoder, Lane, State};
 use support::{Bench, Boots};
@@ -193,4 +193,18 @@ fn a_longer_management_request_is_answered() {
         }
         assert_eq!(tokens, [200]);
     }
+}
+
+/// Arming waits until the drive has told its version: another one might take a frame for
+/// something else.
+#[test]
+fn a_drive_of_unknown_version_is_not_armed() {
+    let mut bench = Bench::new(&Boots::new());
+    bench.loses_hello = true;
+    bench.settle();
+    assert_eq!(bench.ask(Operation::Zero), Ok(Answer::Done));
+    assert_eq!(bench.ask(Operation::Arm), Err(Refusal::Busy));
+    bench.loses_hello = false;
+    bench.run_leased(60);
+    assert_eq!(bench.ask(Operation::Arm), Ok(Answer::Done));
 }

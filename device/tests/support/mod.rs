@@ -64,6 +64,8 @@ pub(crate) struct Bench {
     nonce: Nonce,
     replies: Vec<Reply>,
     pub(crate) blocks: Vec<Block>,
+    /// What comms asks the drive for its version with is lost.
+    pub(crate) loses_hello: bool,
     /// Prescribed encoder counts and velocities of the next ticks.
     pub(crate) script: VecDeque<(i32, f64)>,
     /// Outputs of `render_torque` for those ticks.
@@ -86,6 +88,7 @@ impl Bench {
             nonce: Nonce::NONE,
             replies: Vec::new(),
             blocks: Vec::new(),
+            loses_hello: false,
             script: VecDeque::new(),
             rendered: Vec::new(),
             ms: 0,
@@ -152,6 +155,7 @@ impl Bench {
             .extend(self.drive.link_to_send(has_place).into_iter().flatten());
         if self.to_drive.len() < LINK_BYTES
             && let Some(frame) = self.comms.link_to_send()
+            && !(self.loses_hello && is_management(&frame))
         {
             self.to_drive.extend(frame);
         }
@@ -237,6 +241,13 @@ impl Bench {
         }
         panic!("the drive was given no parameters");
     }
+}
+
+fn is_management(frame: &[u8]) -> bool {
+    let mut decoder = Decoder::new();
+    frame.iter().any(|byte| {
+        matches!(decoder.push(*byte), Some(Ok(body)) if body.lane() == Some(Lane::Management))
+    })
 }
 
 /// What the link carries in a tick.
