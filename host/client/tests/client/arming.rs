@@ -1,7 +1,7 @@
 //! Arming and the lease.
 
 use crate::support::{Port, client, connected, device, ms, pump_for, refusal, turning};
-use crepitus_client::{Event, Transport};
+use crepitus_client::{Error, Event, Transport};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::host::Refusal;
 use crepitus_protocol::{Fault, Session, State};
@@ -189,4 +189,39 @@ fn a_silent_drive_ends_torque_with_a_fault() {
     assert_eq!((status.drive_fault, status.comms_fault), (0, 0));
     client.zero().unwrap();
     client.arm().unwrap();
+}
+
+/// Whoever gives up arming does not leave a device that is armed.
+#[test]
+fn arming_that_is_not_answered_is_withdrawn() {
+    let (shared, mut client) = connected();
+    client.zero().unwrap();
+    shared.borrow_mut().to_host.swallow = usize::MAX;
+    let error = client.arm().unwrap_err();
+    assert!(matches!(error, Error::NoAnswer { .. }), "{error}");
+    client.transport_mut().wait(ms(20));
+    assert_eq!(shared.borrow().drive.state(), State::Disarmed);
+    assert_eq!(shared.borrow().drive.fault(), None);
+}
+
+#[test]
+fn the_holder_of_the_lease_is_told_when_nothing_answers() {
+    let (shared, mut client) = connected();
+    client.zero().unwrap();
+    client.arm().unwrap();
+    pump_for(&mut client, ms(200));
+    shared.borrow_mut().to_host.swallow = usize::MAX;
+    let since = client.now();
+    let lost = loop {
+        if let Some(Event::Lost(loss)) = client.pump(ms(20)).unwrap() {
+            break loss;
+        }
+        assert!(client.now() < since + ms(2_000), "nothing is said");
+    };
+    assert!(
+        client.now() >= since + ms(900),
+        "a few lost replies are no loss"
+    );
+    assert!(format!("{lost:?}").contains("nothing answers"), "{lost:?}");
+    assert!(!client.is_armed());
 }
