@@ -378,7 +378,7 @@ mod tests {
         }
     }
 
-    /// What a drive says of itself does not switch the checks off.
+    /// The checks do not depend on the state that the drive reports.
     #[test]
     fn a_drive_that_says_it_is_not_armed_is_checked_while_the_line_is_on() {
         let check = |sample: Sample, line_is_on: bool| {

@@ -313,7 +313,7 @@ impl Command {
         exchange.announce(Turn {
             tick: low(self.next_tick),
             ends_block: self.batch.ends_block(),
-            // While the bridge floats the torque's allowance starts anew, too.
+            // After the bridge has floated the slew limit starts from zero, as after arming.
             is_armed: self.safety.state() == State::Armed && self.was_driven,
             zero: self.zero,
         });

@@ -83,7 +83,7 @@ impl HeartbeatMonitor {
         self.last_tick.is_some() && now < self.lease_end
     }
 
-    /// Whether the timeout was over in a tick before this one, which has acted on it.
+    /// Whether the timeout expired in an earlier tick.
     fn was_silent(&self, now: u64) -> bool {
         self.is_silent(now.saturating_sub(1))
     }

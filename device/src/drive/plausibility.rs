@@ -62,8 +62,7 @@ const fn check(fault: Fault, ticks: u16) -> Check {
     }
 }
 
-/// A condition that also ends in a fault where it comes and goes: in more than one tick
-/// of nine.
+/// A condition that is also a fault if it is intermittent: in more than one tick of nine.
 const fn recurring(fault: Fault, ticks: u16) -> Check {
     Check {
         fault,
@@ -306,7 +305,7 @@ mod tests {
         assert!(!plausibility.remembers);
     }
 
-    /// What comes and goes does not stay below the debounce for ever.
+    /// An intermittent condition does not stay below its debounce for ever.
     #[test]
     fn what_recurs_in_more_than_one_tick_of_nine_is_a_fault() {
         let recurring = [

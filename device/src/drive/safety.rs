@@ -46,7 +46,7 @@ pub enum Permit {
 pub struct Safety {
     state: State,
     fault: Option<Fault>,
-    /// What the self-test found, which stays until the next start.
+    /// Fault of the self-test, latched until the next start.
     defect: Option<Fault>,
     heartbeat_monitor: HeartbeatMonitor,
     arming: Arming,
@@ -280,7 +280,7 @@ impl Safety {
 mod tests {
     use super::*;
 
-    /// What the self-test found is still there behind a fault that is more urgent.
+    /// A fault of the self-test stays latched behind a more urgent fault.
     #[test]
     fn a_defect_stays_until_the_next_start() {
         for self_test in [SelfTest::ImageBroken, SelfTest::OptionBytesWrong] {

@@ -25,7 +25,7 @@ const WATCH_EVERY: Duration = Duration::from_millis(100);
 /// other's cause a few milliseconds late.
 const SETTLES_IN: Duration = Duration::from_millis(20);
 
-/// Unanswered requests after which whoever has armed the device takes the connection for lost:
+/// Unanswered status requests after which the holder of the lease considers the connection lost:
 /// a second. Torque has ended long before, and the device saves nothing while armed.
 const MOST_UNANSWERED: u8 = 10;
 
