@@ -1,5 +1,6 @@
 //! A table on a page.
 
+use crate::show::superscript;
 use crate::{Column, Table, groups};
 use maud::{Markup, html};
 
@@ -37,7 +38,8 @@ impl<R> Table<'_, R> {
             tr {
                 @for (place, (_, column)) in columns.iter().take(kept).enumerate() {
                     @if place == 0 { th scope="row" { (column.text(row)) } }
-                    @else { td.number[column.right] { (column.text(row)) } }
+                    @else if column.right { td.number { (typeset(&column.text(row))) } }
+                    @else { td { (column.text(row)) } }
                 }
                 @if let Some((_, text)) = remark {
                     td.remark colspan=(columns.len().saturating_sub(kept)) { (text) }
@@ -45,4 +47,21 @@ impl<R> Table<'_, R> {
             }
         }
     }
+}
+
+/// A number as on paper: −2.7·10⁻⁷ for `-2.7e-7`; anything else as it is.
+fn typeset(text: &str) -> String {
+    let minus = |number: &str| number.replace('-', "\u{2212}");
+    match text.split_once('e') {
+        Some((mantissa, exponent)) if is_number(mantissa) && is_number(exponent) => {
+            let raised: String = exponent.chars().map(superscript).collect();
+            format!("{}·10{raised}", minus(mantissa))
+        }
+        _ if is_number(text) => minus(text),
+        _ => text.to_owned(),
+    }
+}
+
+fn is_number(text: &str) -> bool {
+    text.ends_with(|c: char| c.is_ascii_digit()) && text.parse::<f64>().is_ok()
 }

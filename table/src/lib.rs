@@ -4,10 +4,11 @@
 //! file or a page:
 //!
 //! ```text
-//!                      ┌─> to_csv     named columns, all digits
-//! rows ──> Table::of ──┼─> Serialize  the same names and numbers, as JSON
-//!          .column(…)  ├─> to_text    columns with a heading, rounded, aligned
-//!          .headed(…)  └─> to_html    the same headings and numbers
+//!                      ┌─> to_csv       named columns, all digits
+//! rows ──> Table::of ──┼─> Serialize    the same names and numbers, as JSON
+//!          .column(…)  ├─> to_text      columns with a heading, rounded, aligned
+//!          .headed(…)  ├─> to_markdown  the same headings and numbers
+//!                      └─> to_html      the same, with powers of ten as on paper
 //! ```
 //!
 //! ```
@@ -23,6 +24,7 @@
 
 mod cell;
 mod html;
+mod markdown;
 pub mod show;
 mod text;
 

@@ -43,11 +43,35 @@ pub fn scientific(x: f64) -> String {
     }
 }
 
+/// A time in s as µs, without the digits that rounding added: `50 µs`.
+pub fn microseconds(s: f64) -> String {
+    let text = format!("{:.6}", 1e6 * s);
+    format!("{} µs", text.trim_end_matches('0').trim_end_matches('.'))
+}
+
 /// A whole number with its sign; zero has none.
 pub fn signed(x: f64) -> String {
     if x == 0.0 {
         "0".to_owned()
     } else {
         format!("{x:+.0}")
+    }
+}
+
+/// A digit or sign of an exponent, raised.
+pub const fn superscript(c: char) -> char {
+    match c {
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '0' => '⁰',
+        '4' => '⁴',
+        '5' => '⁵',
+        '6' => '⁶',
+        '7' => '⁷',
+        '8' => '⁸',
+        '9' => '⁹',
+        '-' | '\u{2212}' => '⁻',
+        c => c,
     }
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::show::{fixed, milli, scaled, scientific, signed};
+use crate::show::{fixed, microseconds, milli, scaled, scientific, signed};
 
 struct Run {
     name: &'static str,
@@ -86,6 +86,46 @@ fn text_is_rounded_and_aligned() {
 }
 
 #[test]
+fn markdown_names_the_group_in_each_heading() {
+    assert_eq!(
+        table(&runs()).to_markdown(),
+        "| run | what the hand feels: mN·m | what the hand feels: events | costs |\n\
+         |---|---|---|---|\n\
+         | all, \"whole\" | 300.0 | +12 | <3 |\n\
+         | alone | – | +3 | <3 |\n\
+         | none | it <diverged> |  |  |\n"
+    );
+    let bars = Table::of(&["a|b"]).people("x", |text| *text);
+    assert_eq!(bars.to_markdown(), "| x |\n|---|\n| a\\|b |\n");
+}
+
+#[test]
+fn numbers_of_a_page_are_as_on_paper() {
+    let page = |text: &'static str| {
+        let rows = [text];
+        let table = Table::of(&rows)
+            .people("", |_| "")
+            .people("", |text| *text)
+            .right();
+        table.to_html().into_string()
+    };
+    for (text, shown) in [
+        ("2.7e-7", "2.7·10⁻⁷"),
+        ("-1.0e12", "−1.0·10¹²"),
+        ("-3", "−3"),
+        ("+12", "+12"),
+        ("–", "–"),
+        ("2 unmatched", "2 unmatched"),
+        ("f32-like", "f32-like"),
+        ("e-5", "e-5"),
+        ("inf", "inf"),
+    ] {
+        let cell = format!("<td class=\"number\">{shown}</td>");
+        assert!(page(text).contains(&cell), "{text}: {}", page(text));
+    }
+}
+
+#[test]
 fn html_is_escaped_and_says_what_are_numbers() {
     let page = table(&runs()).to_html().into_string();
     for part in [
@@ -109,6 +149,8 @@ fn numbers_are_short() {
         (scientific(4.123e-5), scientific(0.0)),
         ("4.1e-5".into(), "0".into())
     );
+    assert_eq!(microseconds(5e-5), "50 µs");
+    assert_eq!(microseconds(1.0 / 30_000.0), "33.333333 µs");
     for (nm, text) in [
         (0.0, "0"),
         (1.234e-7, "1e-4"),

@@ -1,6 +1,8 @@
 //! Numbers for people: a true minus sign, thin spaces between thousands, no
 //! digits that mean nothing.
 
+use crepitus_table::show::superscript;
+
 /// `value` with this many decimals.
 pub fn fixed(value: f64, decimals: usize) -> String {
     let digits = format!("{:.decimals$}", value.abs());
@@ -66,23 +68,6 @@ pub fn scientific(value: f64) -> String {
     match exponent {
         "0" => mantissa,
         _ => format!("{mantissa}·10{raised}"),
-    }
-}
-
-fn superscript(c: char) -> char {
-    match c {
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        '0' => '⁰',
-        '4' => '⁴',
-        '5' => '⁵',
-        '6' => '⁶',
-        '7' => '⁷',
-        '8' => '⁸',
-        '9' => '⁹',
-        '-' | '\u{2212}' => '⁻',
-        c => c,
     }
 }
 

@@ -20,14 +20,11 @@ mod names;
 mod page;
 mod pair;
 mod steps;
-mod symptom_tables;
+mod studied_tables;
 mod target;
-mod target_table;
 mod tick_table;
 
-use crepitus_study::accuracy::Point;
-use crepitus_study::accuracy::symptoms::SymptomPoint;
-use crepitus_study::accuracy::target::OnTarget;
+use crepitus_study::accuracy::{Point, Study as Results};
 
 use crate::{Paper, Picture, StudyText};
 use pair::Study;
@@ -37,14 +34,9 @@ use pair::Study;
 /// The pair of a scene with `0.988` in its name and the frozen convention
 /// comes first and in full, the others below it, folded. What the ladder costs
 /// on the target, if that is known, has a diagram in each and a table below; so have
-/// the other symptoms, if they were studied.
-pub fn html(
-    points: &[Point],
-    symptoms: &[SymptomPoint],
-    target: Option<&OnTarget>,
-    text: &StudyText,
-) -> String {
-    page::html(&Study::new(points), symptoms, target, text)
+/// the other symptoms and the stage of the vibration actuator, if they were studied.
+pub fn html(results: &Results, text: &StudyText) -> String {
+    page::html(results, text)
 }
 
 /// Every diagram as a file of its own, named after what it shows:

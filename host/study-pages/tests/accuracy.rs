@@ -12,9 +12,10 @@ mod study;
 
 use std::path::Path;
 
-use crepitus_study::accuracy::Point;
+use crepitus_study::accuracy::actuator::ActuatorPoint;
 use crepitus_study::accuracy::symptoms::SymptomPoint;
 use crepitus_study::accuracy::target::{LABEL, OnTarget, Row};
+use crepitus_study::accuracy::{Point, Study};
 use crepitus_study_pages::accuracy::{html, pictures};
 use crepitus_study_pages::{Column, Paper, Section, StudyText};
 use markup::{
@@ -48,21 +49,18 @@ fn text(title: &str) -> StudyText {
 }
 
 fn page(name: &str, points: &[Point], text: &StudyText) -> String {
-    page_with(name, points, None, text)
+    whole_page(name, &of_points(points), text)
 }
 
-fn page_with(name: &str, points: &[Point], target: Option<&OnTarget>, text: &StudyText) -> String {
-    whole_page(name, points, &[], target, text)
+fn of_points(points: &[Point]) -> Study {
+    Study {
+        points: points.to_vec(),
+        ..Study::default()
+    }
 }
 
-fn whole_page(
-    name: &str,
-    points: &[Point],
-    symptoms: &[SymptomPoint],
-    target: Option<&OnTarget>,
-    text: &StudyText,
-) -> String {
-    let page = html(points, symptoms, target, text);
+fn whole_page(name: &str, study: &Study, text: &StudyText) -> String {
+    let page = html(study, text);
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("accuracy-{name}.html"));
     std::fs::write(path, &page).expect("written");
     assert!(page.len() < 3_000_000, "{name}: {} bytes", page.len());
@@ -101,14 +99,40 @@ fn symptoms_have_a_table_at_the_tick_and_one_by_step() {
         point("cogwheel", Some("space"), 5e-5, 40, 0),
         point("texture", None, 5e-5, 40, 3),
     ];
-    let page = whole_page("symptoms", &[], &points, None, &text("With symptoms"));
+    let study = Study {
+        symptoms: points.to_vec(),
+        ..Study::default()
+    };
+    let page = whole_page("symptoms", &study, &text("With symptoms"));
     assert_eq!(count(&page, "The other symptoms"), 1);
     assert!(page.contains("cogwheel (space)") && page.contains("3 unmatched"));
     assert!(page.contains("100 µs") && page.contains("50 µs"));
     // Only lead-pipe was studied at both steps.
     assert_eq!(count(&page, "lead-pipe</th>"), 2);
-    let without = whole_page("no-symptoms", &[], &[], None, &text("Without"));
+    assert!(page.contains("1.5·10⁻⁸") && page.contains("worst event error"));
+    let without = page_of_nothing();
     assert!(!without.contains("The other symptoms"));
+}
+
+fn page_of_nothing() -> String {
+    whole_page("nothing", &Study::default(), &text("Without"))
+}
+
+#[test]
+fn the_actuator_has_a_table() {
+    let study = Study {
+        actuator: vec![ActuatorPoint {
+            precision: "f32",
+            step_s: 5e-5,
+            error: 0.0123,
+            rounding: 2.5e-7,
+            time_ratio: 1.25,
+        }],
+        ..Study::default()
+    };
+    let page = whole_page("actuator", &study, &text("With the actuator"));
+    assert!(page.contains("<th scope=\"row\">50 µs</th>") && page.contains("2.5·10⁻⁷"));
+    assert!(!page_of_nothing().contains("vibration actuator"));
 }
 
 #[test]
@@ -168,7 +192,11 @@ fn what_the_target_says_has_its_diagram_and_its_table() {
         steps: 100,
         rows: vec![row],
     };
-    let page = page_with("target", &points, Some(&target), &text("On the target"));
+    let study = Study {
+        target: Some(target),
+        ..of_points(&points)
+    };
+    let page = whole_page("target", &study, &text("On the target"));
     assert!(marked >= 2);
     assert_eq!(count(&page, "% of a tick)</title>"), marked);
     assert_eq!(count(&page, "role=\"img\""), 7 * 4 * 2 + 1);

@@ -8,6 +8,7 @@ use super::measure::Measure;
 use super::pair::{Pair, Study};
 use crepitus_plot::number::{count, duration};
 use crepitus_plot::page::scrolling;
+use crepitus_table::Table;
 
 /// The points of one rung at one precision that are missing for one reason.
 #[derive(Debug)]
@@ -91,32 +92,16 @@ pub(crate) fn table(study: &Study, pair: &Pair) -> Markup {
                     "events is wrong: events found of true ones. Where the number is right but some belong "
                     "elsewhere: how many are without a partner in the reference or the run."
                 }
-                (scrolling("Points in no curve", &html! {
-                    table.grid {
-                        thead { tr {
-                            th scope="col" { "rung" }
-                            th scope="col" { "precision" }
-                            th scope="col" { "why" }
-                            th scope="col" { "steps" }
-                        } }
-                        tbody {
-                            @for row in &rows {
-                                tr {
-                                    th scope="row" { (row.rung) }
-                                    td { (row.precision) }
-                                    td { (row.reason) }
-                                    td.steps {
-                                        @for (i, step) in row.steps.iter().enumerate() {
-                                            @if i > 0 { "; " }
-                                            span { (step) }
-                                        }
-                                    }
-                                }
-                            }
-                        }
-                    }
-                }))
+                (scrolling("Points in no curve", &listed(&rows).to_html()))
             }
         }
     }
+}
+
+fn listed(rows: &[Row]) -> Table<'_, Row> {
+    Table::of(rows)
+        .people("rung", |row| row.rung)
+        .people("precision", |row| row.precision)
+        .people("why", |row| row.reason)
+        .people("steps", |row| row.steps.join("; "))
 }

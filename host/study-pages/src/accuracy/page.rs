@@ -1,25 +1,20 @@
 //! The page of the study.
 
-use crepitus_study::accuracy::symptoms::SymptomPoint;
-use crepitus_study::accuracy::target::OnTarget;
+use crepitus_study::accuracy::Study as Results;
 use maud::{Markup, html};
 
 use super::curve::{FLOOR, unfit};
 use super::diagram::side_by_side;
 use super::measure::Measure;
 use super::pair::{Pair, Study};
-use super::{left_out, symptom_tables, target, target_table, tick_table};
+use super::{left_out, studied_tables, target, tick_table};
 use crate::{Paper, StudyText};
 use crepitus_plot::{Chart, Figure, page};
 
 const LAYOUT: &str = include_str!("page.css");
 
-pub(crate) fn html(
-    study: &Study,
-    symptoms: &[SymptomPoint],
-    on: Option<&OnTarget>,
-    text: &StudyText,
-) -> String {
+pub(crate) fn html(results: &Results, text: &StudyText) -> String {
+    let study = &Study::new(&results.points);
     let shown: Vec<_> = study
         .pairs
         .iter()
@@ -49,8 +44,9 @@ pub(crate) fn html(
                     }
                 }
             }
-            (symptom_tables::tables(symptoms))
-            @if let Some(on) = on { (target_table::table(on)) }
+            (studied_tables::symptoms(&results.symptoms))
+            (studied_tables::actuator(&results.actuator))
+            @if let Some(on) = &results.target { (studied_tables::target(on)) }
             (page::tables(&text.tables))
             (page::notes(&text.notes))
         }

@@ -2,6 +2,7 @@
 
 use crepitus_plot::page::scrolling;
 use crepitus_study::coupled::{Margin, Verdict};
+use crepitus_table::Table;
 use maud::{Markup, html};
 
 pub(super) fn table(
@@ -10,24 +11,19 @@ pub(super) fn table(
     margins: &[Margin],
     name: fn(&Margin) -> &str,
 ) -> Markup {
+    let table = Table::of(margins)
+        .people(first, name)
+        .people("gear’s friction", |margin| margin.setting.gear.name)
+        .people("cuff, N·m·s/rad", |margin| {
+            margin.setting.damping_nms_per_rad
+        })
+        .left()
+        .people("as it is", |margin| margin.verdict.name())
+        .people("rings from", onset);
     html! {
         section.margins {
             h2 { (title) }
-            (scrolling(title, &html! {
-                table {
-                    thead { tr {
-                        th { (first) } th { "gear’s friction" } th { "cuff, N·m·s/rad" }
-                        th { "as it is" } th { "rings from" }
-                    } }
-                    tbody { @for margin in margins { tr {
-                        td { (name(margin)) }
-                        td { (margin.setting.gear.name) }
-                        td { (margin.setting.damping_nms_per_rad) }
-                        td { (margin.verdict.name()) }
-                        td { (onset(margin)) }
-                    } } }
-                }
-            }))
+            (scrolling(title, &table.to_html()))
         }
     }
 }

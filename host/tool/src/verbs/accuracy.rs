@@ -1,7 +1,6 @@
 //! `crepitus accuracy`: what accuracy costs in time, and the cheapest solver
 //! that is accurate enough, on the host or on the target.
 
-mod actuator;
 mod answer;
 mod orders_table;
 mod page;
@@ -17,8 +16,9 @@ use crate::pictures::Pictures;
 use crate::results;
 use crate::studying::{self, Watch};
 use clap::Args;
+use crepitus_study::accuracy::actuator::actuator_table;
 use crepitus_study::accuracy::symptoms::SymptomPlan;
-use crepitus_study::accuracy::{self, Need, convergence, study};
+use crepitus_study::accuracy::{self, Need, Study, convergence, study};
 use serde_json::json;
 use std::path::PathBuf;
 use summary::Summary;
@@ -159,12 +159,23 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
                 table::at_the_tick(&study),
                 orders_table::by_motion(&by_motion),
                 with_a_line_before(&symptoms::table(&study.symptoms)),
-                with_a_line_before(&actuator::table(&study.actuator)),
+                with_a_line_before(&actuator(&study)),
                 target.map_or_else(String::new, |table| format!("\n{table}")),
                 report.display()
             ))
         }
     }
+}
+
+/// The stage of the vibration actuator; nothing if it was not studied.
+fn actuator(study: &Study) -> String {
+    if study.actuator.is_empty() {
+        return String::new();
+    }
+    format!(
+        "The command of the vibration actuator, 15 to 500 Hz, coarse at 1 rad/s:\n\n{}",
+        actuator_table(&study.actuator).to_markdown()
+    )
 }
 
 /// A paragraph of its own, if there is one.

@@ -25,6 +25,8 @@ use crepitus_model::{
 use crepitus_scene::cpu_time;
 use crepitus_scene::scene::Precision;
 use crepitus_spectrum::cross::Cross;
+use crepitus_table::Table;
+use crepitus_table::show::{fixed, microseconds, scientific};
 use serde::Serialize;
 use std::hint::black_box;
 
@@ -58,6 +60,20 @@ pub struct ActuatorPoint {
     /// CPU time of a tick over that of a step of crepitus, `exact-events` under `frozen`,
     /// in the same precision.
     pub time_ratio: f64,
+}
+
+/// For people, a row a step and precision.
+pub fn actuator_table(points: &[ActuatorPoint]) -> Table<'_, ActuatorPoint> {
+    Table::of(points)
+        .people("step", |point| point.step_s)
+        .rounded(microseconds)
+        .people("precision", |point| point.precision)
+        .people("error", |point| point.error)
+        .rounded(scientific)
+        .people("rounding", |point| point.rounding)
+        .rounded(scientific)
+        .people("× crepitus", |point| point.time_ratio)
+        .rounded(fixed::<1>)
 }
 
 /// Studies the stage, and adds the result to the study.

@@ -8,7 +8,7 @@ use crate::accuracy::target::OnTarget;
 use serde::Serialize;
 
 /// A study's results.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Study {
     /// The studied scenes.
     pub scenes: Vec<StudiedScene>,

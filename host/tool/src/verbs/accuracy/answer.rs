@@ -10,7 +10,7 @@ use crepitus_study::accuracy::answer::{Answer, Candidate, Mark};
 use crepitus_study::accuracy::target::STEP_SHARE;
 use crepitus_study::accuracy::{Need, Question, Study, answer};
 use crepitus_study::limits::Limited;
-use crepitus_table::show::scientific;
+use crepitus_table::show::{microseconds, scientific};
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
@@ -72,7 +72,7 @@ fn in_words(need: &Need, question: &Question<'_>, study: &Study, answer: &Answer
             text,
             "No solver could: any torque that is held for {} is off by {} N·m RMS at least on {}. Ask for a higher \
              --rate, for more torque, or for torque-at-tick.",
-            words::step(why.step_s),
+            microseconds(why.step_s),
             scientific(why.floor_nm),
             why.scene
         );
@@ -85,7 +85,7 @@ fn in_words(need: &Need, question: &Question<'_>, study: &Study, answer: &Answer
                     text,
                     "  {:20} {:>9}  {:>6} ns a step, {:>8} µs per simulated second",
                     c.solver,
-                    words::step(c.step_s),
+                    microseconds(c.step_s),
                     words::plain(c.ns_per_step),
                     words::plain(c.us_per_simulated_s)
                 ),
@@ -95,7 +95,7 @@ fn in_words(need: &Need, question: &Question<'_>, study: &Study, answer: &Answer
                 let steps: Vec<_> = longest
                     .fails_below_s
                     .iter()
-                    .map(|h| words::step(*h))
+                    .map(|h| microseconds(*h))
                     .collect();
                 let _ = write!(text, ", but not at {}", steps.join(", "));
             }
@@ -203,7 +203,7 @@ fn tightest(text: &mut String, chosen: &Candidate) {
 
 /// `exact-break with a step of 50 µs`.
 fn at_step(c: &Candidate) -> String {
-    format!("{} with a step of {}", c.solver, words::step(c.step_s))
+    format!("{} with a step of {}", c.solver, microseconds(c.step_s))
 }
 
 /// Error and scene.

@@ -1,6 +1,5 @@
 //! The files of a study, and the text of its report.
 
-use super::actuator;
 use super::summary::Summary;
 use super::words;
 use crate::failure::Failure;
@@ -13,6 +12,7 @@ use crepitus_study::accuracy::points_table::points_table;
 use crepitus_study::accuracy::symptoms::table::symptoms_table;
 use crepitus_study::accuracy::{Point, Study};
 use crepitus_study_pages::{Section, StudyText, accuracy};
+use crepitus_table::show::microseconds;
 
 /// The files of a study; each diagram as an SVG of its own if asked for.
 pub(super) fn files(
@@ -20,12 +20,7 @@ pub(super) fn files(
     summary: &Summary<'_>,
     pictures: &Pictures,
 ) -> Result<Files, Failure> {
-    let page = accuracy::html(
-        &study.points,
-        &study.symptoms,
-        study.target.as_ref(),
-        &text(study, summary),
-    );
+    let page = accuracy::html(study, &text(study, summary));
     let pictures = pictures.files(|paper| accuracy::pictures(&study.points, paper))?;
     let mut files = report_files(page, summary, pictures)?;
     files.push((
@@ -43,12 +38,6 @@ fn text(study: &Study, summary: &Summary<'_>) -> StudyText {
     let mut tables = vec![studied(study, summary)];
     tables.extend(convergence(study));
     tables.extend(refused(study));
-    if !study.actuator.is_empty() {
-        tables.push(Section {
-            title: "The command of the vibration actuator, 15 to 500 Hz".to_owned(),
-            rows: actuator::rows(&study.actuator),
-        });
-    }
     StudyText {
         title: "What accuracy costs in time".to_owned(),
         intro: "Every solver, in single and double precision and at a range of steps, against the event-driven \
@@ -110,7 +99,7 @@ fn missed_ends(study: &Study) -> Vec<String> {
             study.points.iter().filter(behind).count(),
             study.points.len(),
             worst.solver,
-            words::step(worst.step_s),
+            microseconds(worst.step_s),
             worst.scene,
             worst.convention,
             words::plain(worst.behind_s),
@@ -145,7 +134,7 @@ fn studied(study: &Study, summary: &Summary<'_>) -> Section {
             )
         })
         .collect();
-    let steps: Vec<_> = study.steps_s.iter().map(|h| words::step(*h)).collect();
+    let steps: Vec<_> = study.steps_s.iter().map(|h| microseconds(*h)).collect();
     rows.push(("steps".to_owned(), steps.join(", ")));
     rows.push(("measured on".to_owned(), summary.measured_on()));
     rows.push((

@@ -1,12 +1,11 @@
 //! The symptoms besides crepitus, as a table for the terminal and for a page of the
 //! book.
 
-use super::words;
 use crepitus_scene::scene::Precision;
 use crepitus_study::accuracy::symptoms::SymptomPoint;
+use crepitus_study::accuracy::symptoms::table::precisions_table;
 use crepitus_study::accuracy::target::inputs::TICK_S;
-use crepitus_table::show::{fixed, scientific};
-use std::fmt::Write;
+use crepitus_table::show::microseconds;
 
 /// At the device's tick, or the studied step that is nearest to it.
 pub(super) fn table(points: &[SymptomPoint]) -> String {
@@ -15,56 +14,20 @@ pub(super) fn table(points: &[SymptomPoint]) -> String {
     let Some(step_s) = steps.min_by(|a, b| away(*a).total_cmp(&away(*b))) else {
         return String::new();
     };
-    let mut text = format!(
-        "The other symptoms at a step of {}, against the reference:\n\n\
-         | symptom | events | f64: event, s | torque, N·m | RMS | f32: event, s | torque, N·m | RMS | f32: × crepitus |\n\
-         |---|---|---|---|---|---|---|---|---|\n",
-        words::step(step_s)
-    );
     let here = || points.iter().filter(|p| p.step_s == step_s);
-    for single in here().filter(|p| p.precision == Precision::F32.name()) {
-        let is_double = |p: &&SymptomPoint| {
+    let double_of = |single: &SymptomPoint| {
+        here().find(|p| {
             p.precision == Precision::F64.name()
                 && (p.symptom, p.form) == (single.symptom, single.form)
-        };
-        push(&mut text, single, here().find(is_double));
-    }
-    text
-}
-
-fn push(text: &mut String, single: &SymptomPoint, double: Option<&SymptomPoint>) {
-    let name = single.name();
-    let errors = |p: Option<&SymptomPoint>| {
-        p.map_or_else(
-            || "– | – | –".to_owned(),
-            |p| {
-                format!(
-                    "{} | {} | {}",
-                    event(p),
-                    scientific(p.max_tick_torque_error_nm),
-                    scientific(p.rms_tick_torque_error_nm)
-                )
-            },
-        )
+        })
     };
-    // Writing to a String cannot fail.
-    let _ = writeln!(
-        text,
-        "| {name} | {} | {} | {} | {} |",
-        single.events_true,
-        errors(double),
-        errors(Some(single)),
-        fixed::<1>(single.time_ratio)
-    );
-}
-
-/// The worst error of an event, or how many have no partner.
-fn event(p: &SymptomPoint) -> String {
-    match (p.unmatched, p.events_true) {
-        (0, 0) => "–".to_owned(),
-        (0, _) => scientific(p.max_event_error_s),
-        (unmatched, _) => format!("{unmatched} unmatched"),
-    }
+    let single = here().filter(|p| p.precision == Precision::F32.name());
+    let rows: Vec<_> = single.map(|p| (p, double_of(p))).collect();
+    format!(
+        "The other symptoms at a step of {}, against the reference:\n\n{}",
+        microseconds(step_s),
+        precisions_table(&rows).to_markdown()
+    )
 }
 
 #[cfg(test)]

@@ -1,9 +1,8 @@
 //! The study at the device's tick, as a table for the terminal.
 
-use super::words;
 use crepitus_study::accuracy::{Point, Study};
 use crepitus_table::Table;
-use crepitus_table::show::{fixed, scientific};
+use crepitus_table::show::{fixed, microseconds, scientific};
 use std::fmt::Write;
 
 /// The device's tick, s.
@@ -21,7 +20,10 @@ pub(super) fn at_the_tick(study: &Study) -> String {
     else {
         return "no scene is long enough for any of the steps".to_owned();
     };
-    let mut text = format!("What accuracy costs at a step of {}\n", words::step(step_s));
+    let mut text = format!(
+        "What accuracy costs at a step of {}\n",
+        microseconds(step_s)
+    );
     for rows in rows(study, step_s).chunk_by(|a, b| a.convention == b.convention) {
         let convention = rows.first().map_or("", |row| row.convention);
         // Writing to a String cannot fail.
@@ -76,7 +78,7 @@ fn floor(study: &Study, step_s: f64) -> String {
         .map_or_else(String::new, |worst| {
             format!(
                 "\nTorque that is held for {} is off by {} N·m RMS at least, whatever the solver ({}, {}).",
-                words::step(step_s),
+                microseconds(step_s),
                 scientific(worst.held_floor_nm),
                 worst.scene,
                 worst.convention

@@ -4,10 +4,9 @@ use crate::failure::Failure;
 use crate::studying::{Interrupted, Watch};
 use crepitus_emulator::on_target::{self, OnTarget};
 use crepitus_study::accuracy::target::inputs::Lengths;
-use crepitus_study::accuracy::target::{self, Row, TargetError};
+use crepitus_study::accuracy::target::table::target_table;
+use crepitus_study::accuracy::target::{self, TargetError};
 use crepitus_study::accuracy::{Study, StudyScene};
-use crepitus_table::show::scientific;
-use std::fmt::Write;
 
 /// The program on an emulated core.
 pub(super) fn ladder() -> Result<OnTarget, Failure> {
@@ -48,41 +47,12 @@ pub(super) fn chooses_by(on: &target::OnTarget) -> String {
 
 /// As a table, for the terminal and for a page of the book.
 pub(super) fn table(on: &target::OnTarget) -> String {
-    let mut text = format!(
-        "A step on the target, in f32 at the device's tick ({}; a tick has {}):\n\n\
-         | what | convention | frequency error | mean cycles | worst observed | on | mean instructions | most | worst, % of a tick |\n\
-         |---|---|---|---|---|---|---|---|---|\n",
-        on.label, on.tick_cycles
-    );
-    for row in &on.rows {
-        push(&mut text, row);
-    }
-    // Writing to a String cannot fail.
-    let _ = write!(
-        text,
-        "\n{} steps, every output the same to the bit as on the host.\n",
+    format!(
+        "A step on the target, in f32 at the device's tick ({}; a tick has {}):\n\n{}\n\
+         {} steps, every output the same to the bit as on the host.\n",
+        on.label,
+        on.tick_cycles,
+        target_table(&on.rows).to_markdown(),
         on.steps
-    );
-    text
-}
-
-fn push(text: &mut String, row: &Row) {
-    let frequency = if row.is_rung {
-        scientific(row.frequency_error_rel)
-    } else {
-        String::new()
-    };
-    // Writing to a String cannot fail.
-    let _ = writeln!(
-        text,
-        "| {} | {} | {frequency} | {:.0} | {} | {} | {:.0} | {} | {:.1} |",
-        row.name(),
-        row.convention.unwrap_or("–"),
-        row.mean_cycles,
-        row.worst_cycles,
-        row.worst_on,
-        row.mean_instructions,
-        row.worst_instructions,
-        100.0 * row.worst_share,
-    );
+    )
 }

@@ -11,12 +11,6 @@ pub(super) fn with_unit(x: f64, unit: &str) -> String {
     }
 }
 
-/// A step in µs, without the digits that rounding added.
-pub(super) fn step(step_s: f64) -> String {
-    let text = format!("{:.6}", step_s * 1e6);
-    format!("{} µs", text.trim_end_matches('0').trim_end_matches('.'))
-}
-
 /// A number in three digits, never with an exponent.
 pub(super) fn plain(x: f64) -> String {
     if !(x.abs() > 0.0 && x.is_finite()) {
@@ -36,8 +30,6 @@ mod tests {
     #[test]
     fn numbers_are_short() {
         assert_eq!(with_unit(0.0, "s"), "0 s");
-        assert_eq!(step(5e-5), "50 µs");
-        assert_eq!(step(1.0 / 30_000.0), "33.333333 µs");
         assert_eq!(plain(1234.5), "1234");
         assert_eq!(plain(68.32), "68.3");
         assert_eq!(plain(3.456), "3.46");
