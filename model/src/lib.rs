@@ -53,6 +53,9 @@
 #[cfg(test)]
 extern crate std;
 
+#[macro_use]
+mod named;
+
 pub mod control;
 pub mod joint;
 pub mod parameters;

@@ -22,68 +22,38 @@ use crate::solver::locate::{
 use crate::solver::propagate::{Euler, Exact, Propagate, Rk4, SemiImplicitEuler, Verlet};
 use crate::solver::velocity_match::{Paper, Physical, StickTorque, VelocityMatch};
 
-/// A rung of the ladder: how a slip is carried forward, and how the end of a
-/// phase is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Solver {
-    /// Explicit Euler, switching at the end of the step.
-    Euler,
-    /// Semi-implicit Euler, switching at the end of the step.
-    SemiImplicitEuler,
-    /// Velocity Verlet, switching at the end of the step.
-    Verlet,
-    /// Runge-Kutta of fourth order, switching at the end of the step.
-    Rk4,
-    /// Set-valued backward Euler: decides and propagates in one.
-    ImplicitEuler,
-    /// Exact propagator, switching at the end of the step.
-    Exact,
-    /// Exact propagator, the break located inside the step.
-    ExactBreak,
-    /// Exact propagator, both events by one interpolation.
-    ExactInterpolated,
-    /// Exact propagator, both events located exactly.
-    ExactEvents,
-    /// Runge-Kutta of fourth order, both events located.
-    Rk4Events,
-    /// Exact propagator, both events located on the shaft's cubic path; f64
-    /// only, and on exact angles only.
-    ExactHermite,
+crate::named! {
+    /// A rung of the ladder: how a slip is carried forward, and how the end of a
+    /// phase is found.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum Solver {
+        /// Explicit Euler, switching at the end of the step.
+        Euler => "euler",
+        /// Semi-implicit Euler, switching at the end of the step.
+        SemiImplicitEuler => "semi-implicit-euler",
+        /// Velocity Verlet, switching at the end of the step.
+        Verlet => "verlet",
+        /// Runge-Kutta of fourth order, switching at the end of the step.
+        Rk4 => "rk4",
+        /// Set-valued backward Euler: decides and propagates in one.
+        ImplicitEuler => "implicit-euler",
+        /// Exact propagator, switching at the end of the step.
+        Exact => "exact",
+        /// Exact propagator, the break located inside the step.
+        ExactBreak => "exact-break",
+        /// Exact propagator, both events by one interpolation.
+        ExactInterpolated => "exact-interpolated",
+        /// Exact propagator, both events located exactly.
+        ExactEvents => "exact-events",
+        /// Runge-Kutta of fourth order, both events located.
+        Rk4Events => "rk4-events",
+        /// Exact propagator, both events located on the shaft's cubic path; f64
+        /// only, and on exact angles only.
+        ExactHermite => "exact-hermite",
+    }
 }
 
 impl Solver {
-    /// All rungs.
-    pub const ALL: [Self; 11] = [
-        Self::Euler,
-        Self::SemiImplicitEuler,
-        Self::Verlet,
-        Self::Rk4,
-        Self::ImplicitEuler,
-        Self::Exact,
-        Self::ExactBreak,
-        Self::ExactInterpolated,
-        Self::ExactEvents,
-        Self::Rk4Events,
-        Self::ExactHermite,
-    ];
-
-    /// Name in scene files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Euler => "euler",
-            Self::SemiImplicitEuler => "semi-implicit-euler",
-            Self::Verlet => "verlet",
-            Self::Rk4 => "rk4",
-            Self::ImplicitEuler => "implicit-euler",
-            Self::Exact => "exact",
-            Self::ExactBreak => "exact-break",
-            Self::ExactInterpolated => "exact-interpolated",
-            Self::ExactEvents => "exact-events",
-            Self::Rk4Events => "rk4-events",
-            Self::ExactHermite => "exact-hermite",
-        }
-    }
-
     /// Why this rung has no meaning under a convention, if it has none.
     pub fn refusal(self, convention: Convention) -> Option<&'static str> {
         match (self, convention) {

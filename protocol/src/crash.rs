@@ -111,33 +111,22 @@ impl Part {
     }
 }
 
-/// How a program ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum End {
-    /// A panic; the detail is the line.
-    Panic,
-    /// A processor fault.
-    Fault,
-    /// An interrupt or an exception without a handler; the detail is its number.
-    Unhandled,
-    /// It hung until the watchdog reset it.
-    Watchdog,
+crepitus_model::named! {
+    /// How a program ended.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum End {
+        /// A panic; the detail is the line.
+        Panic => "panic",
+        /// A processor fault.
+        Fault => "processor fault",
+        /// An interrupt or an exception without a handler; the detail is its number.
+        Unhandled => "interrupt without a handler",
+        /// It hung until the watchdog reset it.
+        Watchdog => "reset by the watchdog",
+    }
 }
 
 impl End {
-    /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 4] = [Self::Panic, Self::Fault, Self::Unhandled, Self::Watchdog];
-
-    /// Name for people.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Panic => "panic",
-            Self::Fault => "processor fault",
-            Self::Unhandled => "interrupt without a handler",
-            Self::Watchdog => "reset by the watchdog",
-        }
-    }
-
     fn number(self) -> u32 {
         match self {
             Self::Panic => 0,

@@ -78,6 +78,7 @@ pub mod telemetry;
 pub mod usb;
 
 pub use coil::CoilFault;
+pub use crepitus_model::named;
 pub use decoder::Decoder;
 pub use fault::Fault;
 pub use frame::Frame;

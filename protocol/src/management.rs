@@ -27,43 +27,25 @@ pub enum Role {
     Drive,
 }
 
-/// Cause of a reset.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum ResetCause {
-    /// Power-on.
-    #[default]
-    Power,
-    /// Reset pin, or a requested reboot.
-    Requested,
-    /// Watchdog.
-    Watchdog,
-    /// Brown-out of the supply.
-    BrownOut,
-    /// Panic or fault handler.
-    Panic,
+crepitus_model::named! {
+    /// Cause of a reset.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum ResetCause {
+        /// Power-on.
+        #[default]
+        Power => "power",
+        /// Reset pin, or a requested reboot.
+        Requested => "reset",
+        /// Watchdog.
+        Watchdog => "watchdog",
+        /// Brown-out of the supply.
+        BrownOut => "brown-out",
+        /// Panic or fault handler.
+        Panic => "panic",
+    }
 }
 
 impl ResetCause {
-    /// All causes, in the order of their numbers.
-    pub const ALL: [Self; 5] = [
-        Self::Power,
-        Self::Requested,
-        Self::Watchdog,
-        Self::BrownOut,
-        Self::Panic,
-    ];
-
-    /// Name for people.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Power => "power",
-            Self::Requested => "reset",
-            Self::Watchdog => "watchdog",
-            Self::BrownOut => "brown-out",
-            Self::Panic => "panic",
-        }
-    }
-
     fn number(self) -> u8 {
         match self {
             Self::Power => 0,

@@ -4,36 +4,25 @@ use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// Safety state.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
-)]
-pub enum State {
-    /// The bridge floats.
-    #[default]
-    Disarmed,
-    /// Arming is in progress: both enable lines are being tested.
-    Arming,
-    /// The model's torque is applied.
-    Armed,
-    /// The bridge floats until the fault is cleared.
-    Faulted,
+crepitus_model::named! {
+    /// Safety state.
+    #[derive(
+        Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
+    )]
+    pub enum State {
+        /// The bridge floats.
+        #[default]
+        Disarmed => "disarmed",
+        /// Arming is in progress: both enable lines are being tested.
+        Arming => "arming",
+        /// The model's torque is applied.
+        Armed => "armed",
+        /// The bridge floats until the fault is cleared.
+        Faulted => "faulted",
+    }
 }
 
 impl State {
-    /// All values, in the order of their numbers.
-    pub const ALL: [Self; 4] = [Self::Disarmed, Self::Arming, Self::Armed, Self::Faulted];
-
-    /// Name for people.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Disarmed => "disarmed",
-            Self::Arming => "arming",
-            Self::Armed => "armed",
-            Self::Faulted => "faulted",
-        }
-    }
-
     /// Its number in [`telemetry`](crate::telemetry).
     pub fn number(self) -> u8 {
         match self {
@@ -45,59 +34,33 @@ impl State {
     }
 }
 
-/// Reason why the torque differs from the model's.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum LimitReason {
-    /// It does not.
-    #[default]
-    None,
-    /// Torque limit of the joint.
-    Torque,
-    /// Slew limit: after arming, or of the friction compensation.
-    Slew,
-    /// Current limit of the motor.
-    Current,
-    /// Supply voltage.
-    Voltage,
-    /// The hand has reversed during a slip: no torque until the slip ends.
-    TurnedBack,
-    /// No valid encoder samples: the last torque is held, then released.
-    Holding,
-    /// Not armed.
-    NotArmed,
-    /// End of the range of motion: the torque fades, or is off.
-    Range,
+crepitus_model::named! {
+    /// Reason why the torque differs from the model's.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum LimitReason {
+        /// It does not.
+        #[default]
+        None => "none",
+        /// Torque limit of the joint.
+        Torque => "torque",
+        /// Slew limit: after arming, or of the friction compensation.
+        Slew => "slew",
+        /// Current limit of the motor.
+        Current => "current",
+        /// Supply voltage.
+        Voltage => "voltage",
+        /// The hand has reversed during a slip: no torque until the slip ends.
+        TurnedBack => "turned-back",
+        /// No valid encoder samples: the last torque is held, then released.
+        Holding => "holding",
+        /// Not armed.
+        NotArmed => "not-armed",
+        /// End of the range of motion: the torque fades, or is off.
+        Range => "range",
+    }
 }
 
 impl LimitReason {
-    /// All values, in the order of their numbers.
-    pub const ALL: [Self; 9] = [
-        Self::None,
-        Self::Torque,
-        Self::Slew,
-        Self::Current,
-        Self::Voltage,
-        Self::TurnedBack,
-        Self::Holding,
-        Self::NotArmed,
-        Self::Range,
-    ];
-
-    /// Name in recordings and for people.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Torque => "torque",
-            Self::Slew => "slew",
-            Self::Current => "current",
-            Self::Voltage => "voltage",
-            Self::TurnedBack => "turned-back",
-            Self::Holding => "holding",
-            Self::NotArmed => "not-armed",
-            Self::Range => "range",
-        }
-    }
-
     /// Its number in [`telemetry`](crate::telemetry).
     pub fn number(self) -> u16 {
         match self {

@@ -5,30 +5,32 @@ use crepitus_protocol::management::Action;
 use std::fmt;
 use std::time::Duration;
 
-/// Kind of a request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(
-    missing_docs,
-    reason = "the protocol's messages of the same names say it"
-)]
-pub enum RequestKind {
-    Hello,
-    Stop,
-    Reboot,
-    Open,
-    Status,
-    Counters,
-    Parameters,
-    Commit,
-    Save,
-    Zero,
-    Arm,
-    Disarm,
-    ClearFault,
-    Subscribe,
-    Unsubscribe,
-    ReadCrash,
-    PlayChirp,
+crepitus_protocol::named! {
+    /// Kind of a request.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    #[expect(
+        missing_docs,
+        reason = "the protocol's messages of the same names say it"
+    )]
+    pub enum RequestKind {
+        Hello => "hello",
+        Stop => "stop",
+        Reboot => "reboot",
+        Open => "open",
+        Status => "status",
+        Counters => "counters",
+        Parameters => "parameters",
+        Commit => "commit",
+        Save => "save",
+        Zero => "zero",
+        Arm => "arm",
+        Disarm => "disarm",
+        ClearFault => "clear-fault",
+        Subscribe => "subscribe",
+        Unsubscribe => "unsubscribe",
+        ReadCrash => "read-crash",
+        PlayChirp => "play-chirp",
+    }
 }
 
 /// Timeouts of a request, in the transport's time.
@@ -41,50 +43,6 @@ pub(crate) struct Timing {
 }
 
 impl RequestKind {
-    /// All kinds.
-    pub const ALL: [Self; 17] = [
-        Self::Hello,
-        Self::Stop,
-        Self::Reboot,
-        Self::Open,
-        Self::Status,
-        Self::Counters,
-        Self::Parameters,
-        Self::Commit,
-        Self::Save,
-        Self::Zero,
-        Self::Arm,
-        Self::Disarm,
-        Self::ClearFault,
-        Self::Subscribe,
-        Self::Unsubscribe,
-        Self::ReadCrash,
-        Self::PlayChirp,
-    ];
-
-    /// Name for people.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Hello => "hello",
-            Self::Stop => "stop",
-            Self::Reboot => "reboot",
-            Self::Open => "open",
-            Self::Status => "status",
-            Self::Counters => "counters",
-            Self::Parameters => "parameters",
-            Self::Commit => "commit",
-            Self::Save => "save",
-            Self::Zero => "zero",
-            Self::Arm => "arm",
-            Self::Disarm => "disarm",
-            Self::ClearFault => "clear-fault",
-            Self::Subscribe => "subscribe",
-            Self::Unsubscribe => "unsubscribe",
-            Self::ReadCrash => "read-crash",
-            Self::PlayChirp => "play-chirp",
-        }
-    }
-
     /// Index in [`Self::ALL`].
     pub(crate) fn index(self) -> usize {
         self as usize

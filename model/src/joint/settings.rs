@@ -11,57 +11,34 @@ pub const LONGEST_STEP_S: f64 = 1.0;
 /// dry friction of 0.1 N·m keeps a rotor with as much quiet.
 pub const MOST_STIFFNESS_NM_PER_RAD: f64 = 1200.0;
 
-/// How a slip ends. The paper admits three readings; the book's model page
-/// compares them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Convention {
-    /// Eqs. (10)–(11) to the letter: the slip lasts the closed-form time for
-    /// the shaft speed at the break, whatever the shaft does meanwhile. Robust
-    /// to velocity noise, and the grating goes on while the hand accelerates.
-    #[default]
-    Frozen,
-    /// Eqs. (7)–(8): the stick torque is kr·θ, a slip ends when θ̇ = Ω(t).
-    Paper,
-    /// As `Paper`, with the object's inertia and damping in the stick torque
-    /// (kr·θ + J·Ω̇ + c·Ω): conserves energy to rounding.
-    Physical,
-}
-
-/// The torque with which a stick begins after a slip.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Restart {
-    /// Eq. (1): the spring's torque at that angle, 2Tk − Ts.
-    #[default]
-    Elastic,
-    /// The paper's prose, "T changes between Tk and Ts": the stick starts at
-    /// Tk. `Frozen` only.
-    FromKinetic,
-}
-
-impl Convention {
-    /// All conventions, default first.
-    pub const ALL: [Self; 3] = [Self::Frozen, Self::Paper, Self::Physical];
-
-    /// Name in scene files: `frozen`, `paper`, `physical`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Frozen => "frozen",
-            Self::Paper => "paper",
-            Self::Physical => "physical",
-        }
+crate::named! {
+    /// How a slip ends. The paper admits three readings; the book's model page
+    /// compares them.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Convention {
+        /// Eqs. (10)–(11) to the letter: the slip lasts the closed-form time for
+        /// the shaft speed at the break, whatever the shaft does meanwhile. Robust
+        /// to velocity noise, and the grating goes on while the hand accelerates.
+        #[default]
+        Frozen => "frozen",
+        /// Eqs. (7)–(8): the stick torque is kr·θ, a slip ends when θ̇ = Ω(t).
+        Paper => "paper",
+        /// As `Paper`, with the object's inertia and damping in the stick torque
+        /// (kr·θ + J·Ω̇ + c·Ω): conserves energy to rounding.
+        Physical => "physical",
     }
 }
 
-impl Restart {
-    /// All restarts, default first.
-    pub const ALL: [Self; 2] = [Self::Elastic, Self::FromKinetic];
-
-    /// Name in scene files: `elastic`, `from-kinetic`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Elastic => "elastic",
-            Self::FromKinetic => "from-kinetic",
-        }
+crate::named! {
+    /// The torque with which a stick begins after a slip.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    pub enum Restart {
+        /// Eq. (1): the spring's torque at that angle, 2Tk − Ts.
+        #[default]
+        Elastic => "elastic",
+        /// The paper's prose, "T changes between Tk and Ts": the stick starts at
+        /// Tk. `Frozen` only.
+        FromKinetic => "from-kinetic",
     }
 }
 

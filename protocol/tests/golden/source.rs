@@ -32,7 +32,17 @@ fn read(source: &str, meanings: &mut BTreeMap<String, String>) {
     let mut comment = String::new();
     let mut names: Vec<String> = Vec::new();
     let mut in_attribute = false;
+    // An enumeration with names stands in a macro.
+    let mut in_macro = 0;
     for line in source.lines() {
+        if line.ends_with("named! {") {
+            in_macro = 1;
+            continue;
+        }
+        if line == "}" && in_macro == 1 {
+            in_macro = 0;
+            continue;
+        }
         let text = line.trim_start();
         if in_attribute {
             in_attribute = !text.starts_with(")]");
@@ -42,7 +52,7 @@ fn read(source: &str, meanings: &mut BTreeMap<String, String>) {
             in_attribute = !text.ends_with(']');
             continue;
         }
-        let depth = (line.len() - text.len()) / 4;
+        let depth = ((line.len() - text.len()) / 4).saturating_sub(in_macro);
         if let Some(more) = text.strip_prefix("///") {
             if !comment.is_empty() && !comment.ends_with(' ') {
                 comment.push(' ');

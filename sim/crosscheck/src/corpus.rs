@@ -25,40 +25,20 @@ pub const SEED: u64 = 0xC0FF_EE5E_ED14_0002;
 /// The most events that are compared in a case.
 pub const MOST_EVENTS: usize = 200;
 
-/// The kinds of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MotionKind {
-    /// One velocity.
-    Constant,
-    /// A sine of the angle.
-    Sine,
-    /// Velocity linear between knots, with jumps.
-    Knots,
-    /// Minimum-jerk strokes.
-    Strokes,
-    /// A smoothed recording.
-    Recording,
-}
-
-impl MotionKind {
-    /// All kinds.
-    pub const ALL: [Self; 5] = [
-        Self::Constant,
-        Self::Sine,
-        Self::Knots,
-        Self::Strokes,
-        Self::Recording,
-    ];
-
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Constant => "constant",
-            Self::Sine => "sine",
-            Self::Knots => "velocity-knots",
-            Self::Strokes => "strokes",
-            Self::Recording => "recording",
-        }
+crepitus_model::named! {
+    /// The kinds of motion.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum MotionKind {
+        /// One velocity.
+        Constant => "constant",
+        /// A sine of the angle.
+        Sine => "sine",
+        /// Velocity linear between knots, with jumps.
+        Knots => "velocity-knots",
+        /// Minimum-jerk strokes.
+        Strokes => "strokes",
+        /// A smoothed recording.
+        Recording => "recording",
     }
 }
 

@@ -5,58 +5,32 @@ use crepitus_model::parameters::ParameterSpec;
 use crepitus_plant::effect::Effect;
 use crepitus_plant::effects::{backlash, cuff, drivetrain, limb, motor};
 
-/// A quantity of the brace.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Quantity {
-    /// Dry friction of motor and gear.
-    Friction,
-    /// Share of the motor's torque that the gear loses.
-    LoadLoss,
-    /// Viscous damping about the axis.
-    Viscous,
-    /// Inertia of the rotor, referred to the joint.
-    RotorInertia,
-    /// Inertia of the brace between gear and cuffs.
-    BraceInertia,
-    /// Lost motion of the gear.
-    Backlash,
-    /// Stiffness of the cuffs.
-    CuffStiffness,
-    /// Damping of the cuffs.
-    CuffDamping,
-    /// Torque constant of the motor.
-    TorqueConstant,
+crepitus_model::named! {
+    /// A quantity of the brace.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum Quantity {
+        /// Dry friction of motor and gear.
+        Friction => "dry friction",
+        /// Share of the motor's torque that the gear loses.
+        LoadLoss => "load-dependent friction",
+        /// Viscous damping about the axis.
+        Viscous => "viscous friction",
+        /// Inertia of the rotor, referred to the joint.
+        RotorInertia => "rotor inertia",
+        /// Inertia of the brace between gear and cuffs.
+        BraceInertia => "brace inertia",
+        /// Lost motion of the gear.
+        Backlash => "backlash",
+        /// Stiffness of the cuffs.
+        CuffStiffness => "cuff stiffness",
+        /// Damping of the cuffs.
+        CuffDamping => "cuff damping",
+        /// Torque constant of the motor.
+        TorqueConstant => "torque constant",
+    }
 }
 
 impl Quantity {
-    /// All quantities, in the order of reports.
-    pub const ALL: [Self; 9] = [
-        Self::Friction,
-        Self::LoadLoss,
-        Self::Viscous,
-        Self::RotorInertia,
-        Self::BraceInertia,
-        Self::Backlash,
-        Self::CuffStiffness,
-        Self::CuffDamping,
-        Self::TorqueConstant,
-    ];
-
-    /// Returns the name for sentences.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Friction => "dry friction",
-            Self::LoadLoss => "load-dependent friction",
-            Self::Viscous => "viscous friction",
-            Self::RotorInertia => "rotor inertia",
-            Self::BraceInertia => "brace inertia",
-            Self::Backlash => "backlash",
-            Self::CuffStiffness => "cuff stiffness",
-            Self::CuffDamping => "cuff damping",
-            Self::TorqueConstant => "torque constant",
-        }
-    }
-
     /// Returns the effect of a scene and its key that the quantity is a value of.
     const fn key(self) -> (&'static Effect, &'static str) {
         match self {

@@ -6,102 +6,54 @@ use crate::real::Real;
 use crate::render::Shown;
 use crate::render::position::{Position, Travel};
 
-/// What happens to a symptom; the names are those of `events.csv`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Word {
-    /// The joint enters the wall.
-    Contact,
-    /// It leaves it.
-    Leave,
-    /// The torque has reached its largest.
-    Cap,
-    /// It falls below it again.
-    Uncap,
-    /// A catch.
-    Catch,
-    /// It gives way.
-    Give,
-    /// It can catch again.
-    Rearm,
-    /// Torque begins to build up.
-    Onset,
-    /// There is none any more.
-    Offset,
-    /// The resistance collapses.
-    Release,
-    /// Turned back before it collapsed.
-    Back,
-    /// Clonus starts.
-    Start,
-    /// A beat.
-    Beat,
-    /// The muscle was let go: no further beat.
-    Stop,
-    /// All beats are over.
-    Done,
-    /// An asperity is crossed.
-    Snap,
-    /// A play is dragged along.
-    Flow,
-    /// It stops being dragged.
-    Turn,
-    /// Its torque has fallen to zero.
-    Slack,
-    /// It takes up torque again.
-    Take,
+crate::named! {
+    /// What happens to a symptom; the names are those of `events.csv`.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum Word {
+        /// The joint enters the wall.
+        Contact => "contact",
+        /// It leaves it.
+        Leave => "leave",
+        /// The torque has reached its largest.
+        Cap => "cap",
+        /// It falls below it again.
+        Uncap => "uncap",
+        /// A catch.
+        Catch => "catch",
+        /// It gives way.
+        Give => "give",
+        /// It can catch again.
+        Rearm => "rearm",
+        /// Torque begins to build up.
+        Onset => "onset",
+        /// There is none any more.
+        Offset => "offset",
+        /// The resistance collapses.
+        Release => "release",
+        /// Turned back before it collapsed.
+        Back => "back",
+        /// Clonus starts.
+        Start => "start",
+        /// A beat.
+        Beat => "beat",
+        /// The muscle was let go: no further beat.
+        Stop => "stop",
+        /// All beats are over.
+        Done => "done",
+        /// An asperity is crossed.
+        Snap => "snap",
+        /// A play is dragged along.
+        Flow => "flow",
+        /// It stops being dragged.
+        Turn => "turn",
+        /// Its torque has fallen to zero.
+        Slack => "slack",
+        /// It takes up torque again.
+        Take => "take",
+    }
 }
 
 impl Word {
-    /// All words.
-    pub const ALL: [Self; 20] = [
-        Self::Contact,
-        Self::Leave,
-        Self::Cap,
-        Self::Uncap,
-        Self::Catch,
-        Self::Give,
-        Self::Rearm,
-        Self::Onset,
-        Self::Offset,
-        Self::Release,
-        Self::Back,
-        Self::Start,
-        Self::Beat,
-        Self::Stop,
-        Self::Done,
-        Self::Snap,
-        Self::Flow,
-        Self::Turn,
-        Self::Slack,
-        Self::Take,
-    ];
-
-    /// In `events.csv`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Contact => "contact",
-            Self::Leave => "leave",
-            Self::Cap => "cap",
-            Self::Uncap => "uncap",
-            Self::Catch => "catch",
-            Self::Give => "give",
-            Self::Rearm => "rearm",
-            Self::Onset => "onset",
-            Self::Offset => "offset",
-            Self::Release => "release",
-            Self::Back => "back",
-            Self::Start => "start",
-            Self::Beat => "beat",
-            Self::Stop => "stop",
-            Self::Done => "done",
-            Self::Snap => "snap",
-            Self::Flow => "flow",
-            Self::Turn => "turn",
-            Self::Slack => "slack",
-            Self::Take => "take",
-        }
-    }
-
     /// Whether it is of the play under a symptom, of interest on request.
     pub fn is_of_play(self) -> bool {
         matches!(self, Self::Flow | Self::Turn | Self::Slack | Self::Take)

@@ -11,44 +11,22 @@ use crepitus_plant::motion::{Strokes, VelocityKnot};
 const ANY_RAD: Range = Range::closed(-1e6, 1e6);
 pub(super) const ANY_DEG: Range = Range::closed(-6e7, 6e7);
 
-/// The kinds of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MotionKind {
-    /// One velocity.
-    Constant,
-    /// A sine of the angle.
-    Sine,
-    /// A piecewise linear velocity.
-    VelocityKnots,
-    /// Minimum-jerk strokes there and back.
-    Strokes,
-    /// A recording.
-    Recording,
-    /// A released leg.
-    Released,
-}
-
-impl MotionKind {
-    /// All kinds.
-    pub const ALL: [Self; 6] = [
-        Self::Constant,
-        Self::Sine,
-        Self::VelocityKnots,
-        Self::Strokes,
-        Self::Recording,
-        Self::Released,
-    ];
-
-    /// Name in scene files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Constant => "constant",
-            Self::Sine => "sine",
-            Self::VelocityKnots => "velocity-knots",
-            Self::Strokes => "strokes",
-            Self::Recording => "recording",
-            Self::Released => "released",
-        }
+crepitus_model::named! {
+    /// The kinds of motion.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum MotionKind {
+        /// One velocity.
+        Constant => "constant",
+        /// A sine of the angle.
+        Sine => "sine",
+        /// A piecewise linear velocity.
+        VelocityKnots => "velocity-knots",
+        /// Minimum-jerk strokes there and back.
+        Strokes => "strokes",
+        /// A recording.
+        Recording => "recording",
+        /// A released leg.
+        Released => "released",
     }
 }
 

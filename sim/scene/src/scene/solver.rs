@@ -23,13 +23,15 @@ pub enum SolverChoice {
     },
 }
 
-/// The numbers that the model computes with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Precision {
-    /// Single, as on the device.
-    F32,
-    /// Double.
-    F64,
+crepitus_model::named! {
+    /// The numbers that the model computes with.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Precision {
+        /// Single, as on the device.
+        F32 => "f32",
+        /// Double.
+        F64 => "f64",
+    }
 }
 
 impl SolverChoice {
@@ -49,19 +51,6 @@ impl SolverChoice {
 
 /// Name of the event-driven solver.
 pub(super) const REFERENCE: &str = "reference";
-
-impl Precision {
-    /// Both precisions, the device's first.
-    pub const ALL: [Self; 2] = [Self::F32, Self::F64];
-
-    /// Name in scene files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-        }
-    }
-}
 
 pub(super) fn read_solver(section: &Section<'_>) -> Result<(SolverChoice, u32), SceneError> {
     let ladder = Solver::ALL.map(|s| (s.name(), Some(s)));

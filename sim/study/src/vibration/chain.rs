@@ -5,47 +5,27 @@ use crepitus_plant::effect::Part;
 use crepitus_scene::Scene;
 use serde::Serialize;
 
-/// A step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Step {
-    /// A diseased knee without a device: joint, leg and hand.
-    BareKnee,
-    /// The device, its actuator silent.
-    MotorAlone,
-    /// And the actuator, with the ringing of a bone on the motor if the scene has one.
-    Actuator,
-    /// And the ringing of a bone on the actuator.
-    Ringing,
-    /// The actuator on the brace instead.
-    OnBrace,
-    /// The hand on the leg beside the shell instead.
-    HandOnLeg,
+crepitus_model::named! {
+    /// A step.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Step {
+        /// A diseased knee without a device: joint, leg and hand.
+        BareKnee => "a bare diseased knee",
+        /// The device, its actuator silent.
+        MotorAlone => "the motor alone",
+        /// And the actuator, with the ringing of a bone on the motor if the scene has one.
+        Actuator => "and the actuator",
+        /// And the ringing of a bone on the actuator.
+        Ringing => "and a bone's ringing on it",
+        /// The actuator on the brace instead.
+        OnBrace => "the actuator on the brace",
+        /// The hand on the leg beside the shell instead.
+        HandOnLeg => "the hand on the leg beside it",
+    }
 }
 
 impl Step {
-    /// All, in the order of the tables.
-    pub const ALL: [Self; 6] = [
-        Self::BareKnee,
-        Self::MotorAlone,
-        Self::Actuator,
-        Self::Ringing,
-        Self::OnBrace,
-        Self::HandOnLeg,
-    ];
-
-    /// In words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::BareKnee => "a bare diseased knee",
-            Self::MotorAlone => "the motor alone",
-            Self::Actuator => "and the actuator",
-            Self::Ringing => "and a bone's ringing on it",
-            Self::OnBrace => "the actuator on the brace",
-            Self::HandOnLeg => "the hand on the leg beside it",
-        }
-    }
-
     /// The scene of this step, with the hand.
     pub(super) fn free(self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();

@@ -2,42 +2,24 @@
 
 use clap::ValueEnum;
 
-/// A step of the calibration.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Step {
-    /// The angle's zero, with the joint straight.
-    Zero,
-    /// The range of motion, by hand.
-    Range,
-    /// Motor and encoder turn the same way.
-    Polarity,
-    /// Friction, by a weight that swings.
-    Friction,
-    /// The motor's torque constant, by a weight that hangs.
-    TorqueConstant,
+crepitus_model::named! {
+    /// A step of the calibration.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+    pub(super) enum Step {
+        /// The angle's zero, with the joint straight.
+        Zero => "zero",
+        /// The range of motion, by hand.
+        Range => "range",
+        /// Motor and encoder turn the same way.
+        Polarity => "polarity",
+        /// Friction, by a weight that swings.
+        Friction => "friction",
+        /// The motor's torque constant, by a weight that hangs.
+        TorqueConstant => "torque-constant",
+    }
 }
 
 impl Step {
-    /// All, in the order in which they are taken.
-    pub(super) const ALL: [Self; 5] = [
-        Self::Zero,
-        Self::Range,
-        Self::Polarity,
-        Self::Friction,
-        Self::TorqueConstant,
-    ];
-
-    /// As on the command line.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Zero => "zero",
-            Self::Range => "range",
-            Self::Polarity => "polarity",
-            Self::Friction => "friction",
-            Self::TorqueConstant => "torque-constant",
-        }
-    }
-
     /// Whether a known weight hangs in the brace.
     pub(super) fn needs_weight(self) -> bool {
         matches!(self, Self::Friction | Self::TorqueConstant)
