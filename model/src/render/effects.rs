@@ -41,7 +41,7 @@ use crate::parameters::{
     Choice, Chosen, Parameter, ParameterSpec, Source, Tabled, filled, same, switch,
 };
 use crate::real::Real;
-use symptom::{Besides, Change, Law, law_nm};
+use symptom::{Besides, Bounds, Change, Law, law_nm};
 use tank::Tank;
 
 effects! {

@@ -15,7 +15,7 @@
 //! Sources: all numbers are estimates; the collapse to a fifth takes 85 ms.
 
 use super::play::{Hold, Limits, Part, Play, short_decay};
-use super::symptom::{Change, Hear, Law, Word, sense};
+use super::symptom::{Bounds, Change, Hear, Law, Word, sense};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -210,6 +210,14 @@ impl<F: Real> Law for ClaspKnife<F> {
             });
         }
         Ok(())
+    }
+
+    fn bounds(s: &ClaspKnifeSettings) -> Bounds {
+        Bounds {
+            torque_nm: s.largest_torque_nm(),
+            slope_nm_per_rad: s.slope_nm_per_rad,
+            stiffness_nm_per_rad: s.catch_stiffness_nm_per_rad,
+        }
     }
 
     fn coefficients(

@@ -15,7 +15,7 @@
 //! under load (Hidler & Rymer), the first beat the longest; the amplitude is an
 //! estimate.
 
-use super::symptom::{Change, Hear, Law, Word, sense};
+use super::symptom::{Bounds, Change, Hear, Law, Word, sense};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -224,6 +224,13 @@ impl<F: Real> Law for Clonus<F> {
             });
         }
         Ok(())
+    }
+
+    fn bounds(s: &ClonusSettings) -> Bounds {
+        Bounds {
+            torque_nm: s.amplitude_nm,
+            ..Bounds::default()
+        }
     }
 
     fn coefficients(

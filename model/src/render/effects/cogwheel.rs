@@ -15,7 +15,7 @@
 //! 1981); torques are estimates.
 
 use super::play::{Hold, Limits, Part, Play, dragged};
-use super::symptom::{Change, Hear, Law, Word};
+use super::symptom::{Bounds, Change, Hear, Law, Word};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -182,6 +182,14 @@ impl<F: Real> Law for Cogwheel<F> {
     fn check(s: &CogwheelSettings) -> Result<(), SettingsError> {
         s.validate()?;
         Ok(())
+    }
+
+    fn bounds(s: &CogwheelSettings) -> Bounds {
+        Bounds {
+            torque_nm: s.torque_nm,
+            slope_nm_per_rad: s.elastic_nm_per_rad,
+            stiffness_nm_per_rad: s.torque_nm / s.presliding_deg.to_radians(),
+        }
     }
 
     fn coefficients(

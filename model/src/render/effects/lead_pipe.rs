@@ -13,7 +13,7 @@
 //! torques are estimates.
 
 use super::play::{Hold, Limits, Part, Play};
-use super::symptom::{Hear, Law};
+use super::symptom::{Bounds, Hear, Law};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -108,6 +108,14 @@ impl<F: Real> Law for LeadPipe<F> {
     fn check(s: &LeadPipeSettings) -> Result<(), SettingsError> {
         s.validate()?;
         Ok(())
+    }
+
+    fn bounds(s: &LeadPipeSettings) -> Bounds {
+        Bounds {
+            torque_nm: s.torque_nm,
+            slope_nm_per_rad: s.elastic_nm_per_rad,
+            stiffness_nm_per_rad: s.torque_nm / s.presliding_deg.to_radians(),
+        }
     }
 
     fn coefficients(

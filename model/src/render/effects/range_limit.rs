@@ -19,7 +19,7 @@
 //! Cyriax; the numbers here are derived or estimates.
 
 use super::play::{Hold, Limits, Part, Play};
-use super::symptom::{Change, Hear, Law, Word};
+use super::symptom::{Bounds, Change, Hear, Law, Word};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -425,6 +425,17 @@ impl<F: Real> Law for RangeLimit<F> {
             end.check()?;
         }
         Ok(())
+    }
+
+    fn bounds(s: &RangeLimitSettings) -> Bounds {
+        let (extension, flexion) = (s.extension(), s.flexion());
+        // Never at both ends.
+        let stiffest = flexion.spring_nm_per_rad();
+        Bounds {
+            torque_nm: s.extension_torque_nm.max(s.flexion_torque_nm),
+            slope_nm_per_rad: 0.0,
+            stiffness_nm_per_rad: extension.spring_nm_per_rad().max(stiffest),
+        }
     }
 
     fn coefficients(

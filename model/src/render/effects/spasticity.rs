@@ -13,7 +13,7 @@
 mod caught;
 mod reflex;
 
-use super::symptom::{Hear, Law, sense};
+use super::symptom::{Bounds, Hear, Law, sense};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -263,6 +263,18 @@ impl<F: Real> Law for Spasticity<F> {
             });
         }
         Ok(())
+    }
+
+    fn bounds(s: &SpasticitySettings) -> Bounds {
+        Bounds {
+            torque_nm: s.torque_nm,
+            slope_nm_per_rad: s.stiffness_nm_per_rad,
+            stiffness_nm_per_rad: if s.catches() {
+                s.catch_stiffness_nm_per_rad
+            } else {
+                0.0
+            },
+        }
     }
 
     fn coefficients(

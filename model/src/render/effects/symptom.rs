@@ -158,6 +158,18 @@ impl<F: Real, O: Observe<F>> Hear<F> for Heard<'_, F, O> {
     }
 }
 
+/// What a symptom may ask for in any movement: the limits of the device, the pages of
+/// a report and the supervision by comms are made of the sums.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bounds {
+    /// Its largest torque, but for what grows with the angle, N·m.
+    pub torque_nm: f64,
+    /// What grows with the angle without end, N·m/rad.
+    pub slope_nm_per_rad: f64,
+    /// Its stiffness where it is a spring, N·m/rad.
+    pub stiffness_nm_per_rad: f64,
+}
+
 /// The law of a symptom, with its state.
 pub trait Law: Sized {
     /// The numbers that it computes with.
@@ -177,6 +189,9 @@ pub trait Law: Sized {
     /// # Errors
     /// The first rule that is broken.
     fn check(settings: &Self::Settings) -> Result<(), SettingsError>;
+
+    /// What it may ask for.
+    fn bounds(settings: &Self::Settings) -> Bounds;
 
     /// Coefficients for settings; computed in f64 and rounded once.
     ///

@@ -14,6 +14,22 @@ macro_rules! effects {
             { $($symptom: $s_law;)* }
             { $($addition: $a_law;)* }
         }
+
+        impl EffectSettings {
+            /// Checks each symptom by itself.
+            fn check_symptoms(&self) -> Result<(), SettingsError> {
+                $(if let Some(settings) = &self.$symptom {
+                    <$symptom::$s_law<f64> as Law>::check(settings)?;
+                })*
+                Ok(())
+            }
+
+            /// What each symptom that is on may ask for.
+            fn bounds(&self) -> impl Iterator<Item = Bounds> {
+                let all = [$(self.$symptom.as_ref().map(<$symptom::$s_law<f64> as Law>::bounds)),*];
+                all.into_iter().flatten()
+            }
+        }
     };
     (@all $($effect:ident: $law:ident, $settings:ident;)*) => {
         /// The effects, in the order in which they act.

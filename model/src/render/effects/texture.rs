@@ -13,7 +13,7 @@
 //! specification (Tan et al.); torques in the paper's range; pitches are estimates.
 
 use super::play::{End, Hold, Limits, Part, Play};
-use super::symptom::{Change, Hear, Law, Word};
+use super::symptom::{Bounds, Change, Hear, Law, Word};
 use super::{EffectSpec, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -238,6 +238,14 @@ impl<F: Real> Law for Texture<F> {
             });
         }
         Ok(())
+    }
+
+    fn bounds(s: &TextureSettings) -> Bounds {
+        Bounds {
+            torque_nm: s.peak_nm,
+            slope_nm_per_rad: 0.0,
+            stiffness_nm_per_rad: s.stiffness_nm_per_rad,
+        }
     }
 
     fn coefficients(

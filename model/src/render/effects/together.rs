@@ -1,14 +1,6 @@
 //! What holds between the symptoms that a device renders at once.
 
 use super::EffectSettings;
-use super::clasp_knife::ClaspKnife;
-use super::clonus::Clonus;
-use super::cogwheel::Cogwheel;
-use super::lead_pipe::LeadPipe;
-use super::range_limit::RangeLimit;
-use super::spasticity::Spasticity;
-use super::symptom::Law;
-use super::texture::Texture;
 use crate::joint::{MOST_STIFFNESS_NM_PER_RAD, Parameters, SettingsError};
 use crate::parameters::Tabled;
 
@@ -36,27 +28,7 @@ impl EffectSettings {
     /// # Errors
     /// The first rule that is broken.
     pub fn check_knee(&self, joint: Option<&Parameters>) -> Result<(), SettingsError> {
-        if let Some(settings) = &self.range_limit {
-            RangeLimit::<f64>::check(settings)?;
-        }
-        if let Some(settings) = &self.lead_pipe {
-            LeadPipe::<f64>::check(settings)?;
-        }
-        if let Some(settings) = &self.cogwheel {
-            Cogwheel::<f64>::check(settings)?;
-        }
-        if let Some(settings) = &self.spasticity {
-            Spasticity::<f64>::check(settings)?;
-        }
-        if let Some(settings) = &self.clasp_knife {
-            ClaspKnife::<f64>::check(settings)?;
-        }
-        if let Some(settings) = &self.clonus {
-            Clonus::<f64>::check(settings)?;
-        }
-        if let Some(settings) = &self.texture {
-            Texture::<f64>::check(settings)?;
-        }
+        self.check_symptoms()?;
         if let Some(settings) = &self.vibration_actuator {
             settings.check()?;
         }
@@ -83,53 +55,22 @@ impl EffectSettings {
 
     /// The sum of the stiffness of all that can be elastic at once, N·m/rad.
     pub fn stiffness_nm_per_rad(&self, joint: Option<&Parameters>) -> f64 {
-        let sliding = |nm: f64, deg: f64| nm / deg.to_radians();
-        let parts = [
-            joint.map(|joint| joint.stiffness_nm_per_rad),
-            // Never both.
-            self.range_limit.map(|s| {
-                let flexion = s.flexion().spring_nm_per_rad();
-                s.extension().spring_nm_per_rad().max(flexion)
-            }),
-            self.lead_pipe
-                .map(|s| sliding(s.torque_nm, s.presliding_deg)),
-            self.cogwheel
-                .map(|s| sliding(s.torque_nm, s.presliding_deg)),
-            self.spasticity
-                .filter(|s| s.form == 0)
-                .map(|s| s.catch_stiffness_nm_per_rad),
-            self.clasp_knife.map(|s| s.catch_stiffness_nm_per_rad),
-            self.texture.map(|s| s.stiffness_nm_per_rad),
-        ];
-        parts.into_iter().flatten().sum()
+        let joint = joint.map(|joint| joint.stiffness_nm_per_rad);
+        let symptoms = self.bounds().map(|most| most.stiffness_nm_per_rad);
+        joint.into_iter().chain(symptoms).sum()
     }
 
     /// The largest torque that the symptoms and the joint can ask for together, N·m.
     pub fn largest_torque_nm(&self, joint: Option<&Parameters>) -> f64 {
-        let parts = [
-            joint.map(|joint| joint.static_torque_nm),
-            self.range_limit
-                .map(|s| s.extension_torque_nm.max(s.flexion_torque_nm)),
-            self.lead_pipe.map(|s| s.torque_nm),
-            self.cogwheel.map(|s| s.torque_nm),
-            self.spasticity.map(|s| s.torque_nm),
-            self.clasp_knife.map(|s| s.largest_torque_nm()),
-            self.clonus.map(|s| s.amplitude_nm),
-            self.texture.map(|s| s.peak_nm),
-        ];
-        parts.into_iter().flatten().sum()
+        let joint = joint.map(|joint| joint.static_torque_nm);
+        let symptoms = self.bounds().map(|most| most.torque_nm);
+        joint.into_iter().chain(symptoms).sum()
     }
 
     /// A torque that symptoms and joint never exceed together while the leg is within
     /// half a turn, N·m: with what grows with the angle.
     pub fn torque_bound_nm(&self, joint: Option<&Parameters>) -> f64 {
-        let slopes = [
-            self.lead_pipe.map(|s| s.elastic_nm_per_rad),
-            self.cogwheel.map(|s| s.elastic_nm_per_rad),
-            self.spasticity.map(|s| s.stiffness_nm_per_rad),
-            self.clasp_knife.map(|s| s.slope_nm_per_rad),
-        ];
-        let slope: f64 = slopes.into_iter().flatten().sum();
+        let slope: f64 = self.bounds().map(|most| most.slope_nm_per_rad).sum();
         self.largest_torque_nm(joint) + slope * core::f64::consts::PI
     }
 }
