@@ -230,7 +230,8 @@ impl Transport for Shared {
                 },
             };
             if is_leaving {
-                self.attach().map_err(|_| lost(&self.port))?;
+                self.attach()
+                    .map_err(|error| not_again(&self.port, &error))?;
             }
         }
     }
@@ -249,6 +250,13 @@ impl Transport for Shared {
 
     fn name(&self) -> String {
         self.port.clone()
+    }
+}
+
+fn not_again(port: &str, error: &TransportError) -> TransportError {
+    TransportError::Lost {
+        port: port.to_owned(),
+        detail: format!("the program that had it open has ended, and then: {error}"),
     }
 }
 
