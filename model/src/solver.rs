@@ -144,7 +144,15 @@ pub fn with_joint<F: Real, V: JointVisitor<F>>(
             Solver::ExactBreak => start.frozen::<ExactBreak, V>(visitor),
             Solver::ExactInterpolated => start.frozen::<Interpolated, V>(visitor),
             Solver::ExactEvents => start.frozen::<ExactEvents, V>(visitor),
-            _ => start.frozen::<EndOfStep, V>(visitor),
+            // But for `exact` they were refused.
+            Solver::Exact
+            | Solver::Euler
+            | Solver::SemiImplicitEuler
+            | Solver::Verlet
+            | Solver::Rk4
+            | Solver::ImplicitEuler
+            | Solver::Rk4Events
+            | Solver::ExactHermite => start.frozen::<EndOfStep, V>(visitor),
         },
         Convention::Paper => start.velocity_match::<Paper, V>(solver, visitor),
         Convention::Physical => start.velocity_match::<Physical, V>(solver, visitor),

@@ -295,6 +295,7 @@ impl Preparation {
         };
         let reader = Reader::of(&next.encoder)?;
         let motor_changed = now.current_loop != next.current_loop
+            || now.motor != next.motor
             || now.joint_constant().to_bits() != next.joint_constant().to_bits();
         let prepared = Prepared {
             rendering: RenderingPlan {

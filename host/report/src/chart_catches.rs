@@ -16,7 +16,7 @@ pub(crate) fn figure(
     settings: Option<&SpasticitySettings>,
     paper: Paper,
 ) -> Option<Figure> {
-    if symptom.words.effect != "spasticity" {
+    if symptom.words.effect() != "spasticity" {
         return None;
     }
     let caught = caught(symptom);

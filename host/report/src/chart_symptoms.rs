@@ -75,14 +75,14 @@ fn figure(
     if timeline.line.is_empty() {
         return None;
     }
-    let drawn = limits::of(settings, words.effect, ends(path), &found.met);
+    let drawn = limits::of(settings, words.effect(), ends(path), &found.met);
     let charts = vec![
         over_angle(path, &drawn, Some(symptom), paper),
         over_time(figures, symptom, paper),
     ];
     Some(Figure {
-        name: words.effect,
-        title: words.title,
+        name: words.effect(),
+        title: words.title(),
         legend: legend(symptom, &drawn),
         charts,
         caption: caption(symptom, &drawn),
@@ -294,7 +294,7 @@ fn legend(symptom: &Symptom, drawn: &Drawn) -> Vec<Key> {
         }
     }
     let Timeline { stays, events, .. } = &symptom.timeline;
-    for ((state, ink), name) in (1..).zip(STATES).zip(symptom.words.states.iter().skip(1)) {
+    for ((state, ink), name) in (1..).zip(STATES).zip(symptom.words.states().iter().skip(1)) {
         if stays.iter().any(|stay| stay.state == state) {
             legend.push(Key::new(Sign::Patch(ink), name));
         }
@@ -334,7 +334,7 @@ fn caption(symptom: &Symptom, drawn: &Drawn) -> String {
         .to_owned();
     if !drawn.lines.is_empty() {
         caption += " The wide lines behind are the limits that follow from the settings.";
-    } else if !symptom.words.changes.is_empty() || symptom.shows_all() {
+    } else if !symptom.words.has_changes() || symptom.shows_all() {
         caption += " Its settings changed, or are not known: no limits are drawn.";
     }
     if symptom.shows_all() {
@@ -366,7 +366,7 @@ fn sum(
     let ends = ends(&together.path);
     let marks = list
         .iter()
-        .flat_map(|s| limits::of(settings, s.words.effect, ends, &s.found.met).marks);
+        .flat_map(|s| limits::of(settings, s.words.effect(), ends, &s.found.met).marks);
     let drawn = Drawn {
         marks: marks.collect(),
         ..Drawn::default()

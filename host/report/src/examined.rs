@@ -29,7 +29,7 @@ type Row = (String, String);
 fn section(symptom: &Symptom, settings: &EffectSettings) -> Section {
     let found = &symptom.found;
     let mut rows = Vec::new();
-    match symptom.words.effect {
+    match symptom.words.effect() {
         "range-limit" => ends(found, &mut rows),
         "spasticity" => catches(found, settings, &mut rows),
         "clasp-knife" => collapses(found, &mut rows),
@@ -66,7 +66,7 @@ fn section(symptom: &Symptom, settings: &EffectSettings) -> Section {
         rows.push(row("events", value));
     }
     Section {
-        title: format!("On examination: {}", lower(symptom.words.title)),
+        title: format!("On examination: {}", lower(symptom.words.title())),
         rows,
     }
 }

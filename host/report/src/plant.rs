@@ -8,7 +8,7 @@ use crepitus_scene::trace::Column;
 use crate::channels::{Channels, Sample, Setup};
 use crate::course::Course;
 use crate::spectrum::{Spectrum, Welch};
-use crate::symptoms::words::{SYMPTOMS, Words};
+use crate::symptoms::words::Words;
 use crepitus_plot::Thinned;
 use crepitus_plot::palette::{CURVES, Ink};
 
@@ -69,8 +69,7 @@ const fn of_motor(column: &'static str, title: &'static str, axis: &'static str)
 impl Shown {
     /// The torque of a symptom.
     pub(crate) fn is_symptom(&self) -> bool {
-        let mut all = SYMPTOMS.iter().filter_map(Words::spec);
-        all.any(|spec| spec.column == self.column)
+        Words::all().any(|words| words.spec.column == self.column)
     }
 }
 

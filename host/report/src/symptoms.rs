@@ -21,7 +21,7 @@ use crepitus_scene::trace::{Column, SymptomEvent, Word};
 use found::Found;
 use path::Path;
 use timeline::Timeline;
-use words::{SYMPTOMS, Words};
+use words::Words;
 
 /// Where a symptom's numbers stand in a row.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +34,7 @@ struct Places {
 /// A symptom of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Symptom {
-    pub(crate) words: &'static Words,
+    pub(crate) words: Words,
     places: Places,
     pub(crate) path: Path,
     pub(crate) timeline: Timeline,
@@ -61,7 +61,7 @@ pub(crate) struct Symptoms {
 }
 
 impl Symptom {
-    fn new(words: &'static Words, places: Places) -> Self {
+    fn new(words: Words, places: Places) -> Self {
         Self {
             words,
             places,
@@ -118,13 +118,13 @@ impl Symptom {
             Some(before) => self.words.word_between(before, phase),
             None => None,
         };
-        let beat = (self.words.effect == "clonus" && phase == 1)
+        let beat = (self.words.effect() == "clonus" && phase == 1)
             .then_some(Word::Beat)
             .filter(|_| self.found.beats_are_told && self.last_nm == 0.0 && nm != 0.0);
         for word in word.into_iter().chain(beat) {
             self.noted(&SymptomEvent {
                 time_s: sample.time,
-                effect: self.words.effect,
+                effect: self.words.effect(),
                 word,
                 angle_rad: sample.angle,
                 omega_rad_s: sample.omega,
@@ -137,7 +137,7 @@ impl Symptom {
     /// Without phases the events tell the states.
     fn keep_state(&mut self, time_s: f64, nm: f64) {
         // A wall that is left again: the torque falls below its cap at once.
-        let yields = self.words.effect == "range-limit" && self.state == Some(2);
+        let yields = self.words.effect() == "range-limit" && self.state == Some(2);
         if yields && nm.abs() < self.last_nm.abs() {
             self.state = Some(1);
         }
@@ -173,8 +173,8 @@ impl Symptoms {
         let at = |name: &str| setup.columns.iter().position(|c: &Column| c.name == name);
         let total = at("torque_nm");
         let mut list = Vec::new();
-        for words in &SYMPTOMS {
-            let spec = words.spec()?;
+        for words in Words::all() {
+            let spec = words.spec;
             let places = Places {
                 torque: at(spec.column),
                 phase: spec.phases.and_then(|phases| at(phases.column)),
@@ -233,7 +233,7 @@ impl Symptoms {
     /// Takes an event that a run reports.
     pub(crate) fn event(&mut self, event: &SymptomEvent) {
         let mut of = self.list.iter_mut();
-        if let Some(symptom) = of.find(|symptom| symptom.words.effect == event.effect)
+        if let Some(symptom) = of.find(|symptom| symptom.words.effect() == event.effect)
             && event.time_s.is_finite()
         {
             symptom.event(event);

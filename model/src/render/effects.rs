@@ -41,7 +41,7 @@ use crate::parameters::{
     Choice, Chosen, Parameter, ParameterSpec, Source, Tabled, filled, same, switch,
 };
 use crate::real::Real;
-use symptom::{Besides, Bounds, Change, Law, law_nm};
+use symptom::{Besides, Bounds, Change, ClinicWords, Law, law_nm};
 use tank::Tank;
 
 effects! {
@@ -84,9 +84,21 @@ pub struct EffectSpec {
     pub parameters: &'static [ParameterSpec],
     /// Its choices.
     pub choices: &'static [Choice],
+    /// Whose it is.
+    pub of: Owner,
     /// What the names of parameters begin with that belong to a side. In a scene a
     /// name without it stands for all sides.
     pub sides: &'static [&'static str],
+}
+
+/// Whose an effect is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Owner {
+    /// The knee's: presets set it.
+    Knee,
+    /// The brace's: its numbers were identified once, and no preset changes them unless it
+    /// names the effect.
+    Brace,
 }
 
 /// An effect that another one needs.
@@ -473,14 +485,8 @@ pub(crate) mod tests {
         type Coefficients = ();
         type Switched = Faded<f32, Self>;
 
-        const SPEC: EffectSpec = EffectSpec {
-            name: "constant",
-            phases: Some(PhaseSpec {
-                column: "constant_phase",
-                names: &["rest", "contact", "cap"],
-            }),
-            ..SPECS[0]
-        };
+        // As a symptom of the table, as there is no room for phases of another one.
+        const SPEC: EffectSpec = SPECS[0];
         const IS_SYMPTOM: bool = true;
 
         fn coefficients(_: &Self::Settings, _: &Timing) -> Result<(), SettingsError> {

@@ -210,6 +210,21 @@ impl<F: Real> Travel<F> {
         (0..self.ticks).fold(x, |left, _| left - left * lost)
     }
 
+    /// What comes to so much in a tick, over all ticks.
+    #[inline]
+    pub fn over_all(&self, per_tick: F) -> F {
+        if self.ticks == 1 {
+            per_tick
+        } else {
+            self.times_ticks(per_tick)
+        }
+    }
+
+    #[cold]
+    fn times_ticks(&self, per_tick: F) -> F {
+        per_tick * F::from_whole(u64::from(self.ticks))
+    }
+
     /// Where the joint is after this share of the time.
     #[inline]
     pub fn place(&self, fraction: F) -> Position<F> {

@@ -200,6 +200,35 @@ fn texture_snaps_by_the_angle() {
     }
 }
 
+/// In f32 a slow answer comes as near to what the muscle was told as in f64: what it gains in a
+/// tick is then less than the last digit of what it is.
+#[test]
+fn a_slow_reflex_is_as_exact_in_single_precision() {
+    for activation_s in [0.01, 0.03] {
+        let settings = EffectSettings {
+            spasticity: Some(SpasticitySettings {
+                form: 1,
+                gain_nm_per_rad: 20.0,
+                velocity_shift_s: 0.1,
+                activation_s,
+                ..SpasticitySettings::default()
+            }),
+            ..EffectSettings::default()
+        };
+        let motion = ramp(60.0, 100.0);
+        let exact = only::<f64>(settings, 60.0).run(0.5, &motion);
+        let single = only::<f32>(settings, 60.0).run(0.5, &motion);
+        let errors = exact
+            .rows
+            .iter()
+            .zip(&single.rows)
+            .map(|(a, b)| (a.2 - b.2).abs());
+        let worst_nm = errors.fold(0.0, f64::max);
+        assert!(worst_nm < 2e-5, "{activation_s} s: {worst_nm:e}");
+        assert!(exact.rows.last().unwrap().2 > 4.4);
+    }
+}
+
 #[test]
 fn a_reflex_is_late_and_passive_below_some_hertz() {
     let muscle = SpasticitySettings {

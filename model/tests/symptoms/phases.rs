@@ -212,6 +212,46 @@ fn a_beat_within_a_gap_has_its_time() {
     near(share, 5.0 / 9.0, 1e-6);
 }
 
+/// What is left of a catch after a gap in which it began is what is left of it anyway, in both
+/// laws that decay.
+#[test]
+fn a_decay_that_begins_within_a_gap_has_its_time() {
+    let motion = ramp(20.0, 130.0);
+    let spastic = EffectSettings {
+        spasticity: Some(SpasticitySettings::default()),
+        ..EffectSettings::default()
+    };
+    let clasp_knife = EffectSettings {
+        clasp_knife: Some(ClaspKnifeSettings {
+            onset_deg: 25.0,
+            release_deg: 42.5,
+            ..ClaspKnifeSettings::default()
+        }),
+        ..EffectSettings::default()
+    };
+    for settings in [spastic, clasp_knife] {
+        let whole = only::<f64>(settings, 20.0).run(0.2, &motion);
+        let mut rig = only::<f64>(settings, 20.0);
+        // Both come at 42.5 deg, 3,461.5 ticks after the beginning.
+        let (before, after) = (3_455_u32, 3_471_u32);
+        rig.run(f64::from(before) * TICK_S, &motion);
+        let at = |tick: u32| motion(f64::from(tick) * TICK_S);
+        for tick in before + 1..after {
+            rig.tick(Sample::Lost, Sight::IDEAL.position(at(tick).0));
+        }
+        let (from, to) = (at(before), at(after));
+        rig.step(from, to, to.0 - from.0);
+        for tick in after..4_000 {
+            let (from, to) = (at(tick), at(tick + 1));
+            let nm = rig.step(from, to, to.0 - from.0);
+            if tick == 3_999 {
+                near(nm, whole.rows.last().unwrap().2, 1e-6);
+                assert!(nm.abs() > 0.1, "{nm}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_count_that_flickers_at_the_edge_of_a_tooth_gives_nothing_way() {
     let sight = Sight::of_encoder(&crepitus_model::control::encoder::EncoderSettings::default());

@@ -1,8 +1,7 @@
 //! The device's parameters of a scene or a preset.
 
 use crepitus_model::parameters::Source;
-use crepitus_model::render::effects::friction_compensation::FrictionCompensation;
-use crepitus_model::render::effects::{DeviceEffect, SPECS};
+use crepitus_model::render::effects::{Owner, SPECS};
 use crepitus_model::{Convention, Restart};
 use crepitus_plant::assembly::Listed;
 use crepitus_plant::effect::{Effect, Given};
@@ -51,8 +50,8 @@ pub fn values(scene: &Scene) -> Result<Values, NotRendered> {
 }
 
 /// The values of a device that gets the effects of a scene: those that it does not
-/// list go off and to their defaults. What the hardware is and may do stays: encoder,
-/// motor, limits, range, sensor.
+/// list go off, those of the knee to their defaults. What the hardware is and may do stays:
+/// encoder, motor, limits, range, sensor, and the numbers of friction and actuator.
 ///
 /// # Errors
 /// [`NotRendered`] if no device can render it.
@@ -60,7 +59,11 @@ pub fn with_scene(now: &Values, scene: &Scene) -> Result<Values, NotRendered> {
     let of_scene = values(scene)?;
     let mut values = *now;
     for parameter in &PARAMETERS {
+        // Of the brace's that the scene leaves out, the numbers stay.
+        let is_set =
+            is_of_knee(parameter.group) || scene.has(parameter.group) || parameter.key() == RENDER;
         if is_effect(parameter.group)
+            && is_set
             && let Some(value) = of_scene.get(parameter.id)
         {
             values.set(parameter.id, value);
@@ -95,11 +98,12 @@ pub fn is_effect(group: &str) -> bool {
     group == crepitus::EFFECT.name || SPECS.iter().any(|spec| spec.name == group)
 }
 
-/// Whether an effect is of the knee and not of the brace: all but the compensation of
-/// the gear's friction.
+/// Whether an effect is of the knee and not of the brace.
 pub fn is_of_knee(group: &str) -> bool {
-    const OF_BRACE: &str = <FrictionCompensation<f64> as DeviceEffect<f64>>::SPEC.name;
-    is_effect(group) && group != OF_BRACE
+    let spec = SPECS.iter().find(|spec| spec.name == group);
+    spec.map_or(group == crepitus::EFFECT.name, |spec| {
+        spec.of == Owner::Knee
+    })
 }
 
 /// The knee of a device as a preset without a name or texts: its effects that are on.
@@ -201,6 +205,9 @@ mod tests {
             ("bone-shaping.render", 1.0),
             ("friction-compensation.render", 1.0),
             ("friction-compensation.share", 0.7),
+            ("vibration-actuator.render", 1.0),
+            ("vibration-actuator.resistance_ohm", 2.4),
+            ("vibration-actuator.supply_v", 4.5),
             ("encoder.lines", 1000.0),
             ("limits.torque_nm", 4.0),
             ("range.most_deg", 100.0),
@@ -247,6 +254,9 @@ mod tests {
             ("bone-shaping.render", 0.0),
             ("friction-compensation.render", 1.0),
             ("friction-compensation.share", 0.7),
+            ("vibration-actuator.render", 1.0),
+            ("vibration-actuator.resistance_ohm", 2.4),
+            ("vibration-actuator.supply_v", 4.5),
             ("encoder.lines", 1000.0),
             ("limits.torque_nm", 4.0),
             ("range.most_deg", 100.0),

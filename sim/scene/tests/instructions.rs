@@ -183,7 +183,7 @@ fn an_absent_effect_executes_nothing() {
         if effect.name != "encoder" {
             assert!(
                 own(&whole) > u64::from(STEPS),
-                "{} is not seen",
+                "{} is not seen: if all of it is inlined, `follow` needs the attributes of lead_pipe.rs",
                 effect.name
             );
         }

@@ -139,7 +139,7 @@ impl Command {
         counters: &Counters,
     ) -> CoilOutput {
         let (fault_before, was_driven) = (self.coil.fault(), self.coil.is_driven());
-        let chirp_v = self.chirped(may);
+        let chirp_v = self.chirped(may, coil_v);
         self.has_chirped = chirp_v.is_some();
         let coil_v = chirp_v.unwrap_or(coil_v);
         let output = self.coil.tick(coil_v, may, coil_a, has_tripped);
@@ -153,11 +153,12 @@ impl Command {
         output
     }
 
-    /// The voltage of the chirp, if one is played. It ends for good with the torque, and
-    /// with a fault of the coil.
-    fn chirped(&mut self, may: bool) -> Option<f32> {
+    /// The voltage of the chirp, if one is played. It ends for good with the torque, with
+    /// a fault of the coil, and where the renderer has a voltage of its own: a gain that is
+    /// committed meanwhile would fade in unseen, and be a step at the chirp's end.
+    fn chirped(&mut self, may: bool, coil_v: f32) -> Option<f32> {
         let chirp = self.chirp.as_mut()?;
-        if !may || self.coil.fault().is_some() || chirp.is_over() {
+        if !may || coil_v != 0.0 || self.coil.fault().is_some() || chirp.is_over() {
             self.chirp = None;
             return None;
         }

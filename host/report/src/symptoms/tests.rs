@@ -5,6 +5,7 @@ use super::found::{Found, Met};
 use super::limits;
 use super::path::Path;
 use super::timeline::Timeline;
+use super::words::Words;
 use crate::channels::Setup;
 use crate::collector::{Collector, Figures};
 use crate::fixture::symptom::{EXAMINED, Item, STEPPED, ran, scene};
@@ -80,7 +81,7 @@ fn every_limit_that_is_drawn_is_met_by_the_torque() {
         let strokes: Vec<Vec<Point>> = strokes.map(Iterator::collect).collect();
         let path: Vec<_> = strokes.iter().flat_map(|stroke| lines(stroke)).collect();
         let ends = crepitus_plot::extent(strokes.iter().flatten().map(|p| p.x));
-        let effect = symptom.words.effect;
+        let effect = symptom.words.effect();
         let drawn = limits::of(&settings, effect, ends, &symptom.found.met);
         assert!(!drawn.lines.is_empty(), "{effect}");
         for line in &drawn.lines {
@@ -223,7 +224,7 @@ fn phases_of_a_recording_tell_the_events_of_the_run() {
         let settings = scene.effect_settings();
         let (columns, items) = ran(&scene);
         let run = collect(&settings, &columns, &items).symptoms.expect("one");
-        let effect = run.list[0].words.effect;
+        let effect = run.list[0].words.effect();
         let (columns, items) = as_recorded(&columns, &items, effect);
         let recorded = collect(&settings, &columns, &items).symptoms.expect("one");
         assert!(recorded.list[0].shows_all() && recorded.together.is_none());
@@ -287,10 +288,10 @@ fn while_it_is_not_armed_nothing_is_told() {
 /// An hour of everything at once, without end.
 #[test]
 fn memory_does_not_grow_with_the_run() {
-    let symptoms = super::SYMPTOMS.each_ref();
+    let symptoms: Vec<Words> = Words::all().collect();
     let mut names = vec!["t_s", "angle_rad", "omega_rad_s"];
-    for words in symptoms {
-        let spec = words.spec().expect("an effect");
+    for words in &symptoms {
+        let spec = words.spec;
         names.extend([spec.column, spec.phases.expect("phases").column]);
     }
     let columns: Vec<Column> = names
@@ -311,13 +312,13 @@ fn memory_does_not_grow_with_the_run() {
     for i in 0..600_000_u32 {
         let time_s = f64::from(i) * 6e-3;
         let mut row = vec![time_s, time_s.sin(), time_s.cos()];
-        for words in symptoms {
+        for words in &symptoms {
             noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             row.extend([f64::from(noise >> 16) * 1e-4, f64::from((noise >> 20) % 2)]);
             for (word, _) in words.named() {
                 collector.symptom(&SymptomEvent {
                     time_s,
-                    effect: words.effect,
+                    effect: words.effect(),
                     word,
                     angle_rad: row[1],
                     omega_rad_s: row[2],
@@ -329,7 +330,7 @@ fn memory_does_not_grow_with_the_run() {
         collector.row(&row);
     }
     let found = collector.finish().symptoms.expect("all");
-    assert_eq!(found.list.len(), 7);
+    assert_eq!(found.list.len(), symptoms.len());
     for symptom in &found.list {
         let Timeline {
             line,
@@ -350,7 +351,7 @@ fn memory_does_not_grow_with_the_run() {
         assert!(met.len() <= Found::MOST && bouts.len() <= Found::MOST);
         assert!(beats.len() <= Found::MOST && rates.len() <= 2);
     }
-    let of = |effect| found.list.iter().find(|s| s.words.effect == effect);
+    let of = |effect| found.list.iter().find(|s| s.words.effect() == effect);
     let clonus = of("clonus").expect("it is there");
     assert_eq!(clonus.found.beats.len(), Found::MOST);
     assert!(clonus.found.left_out > 500_000);

@@ -65,7 +65,7 @@ use crate::real::Real;
 use crate::render::Shown;
 use crate::render::effects::tank::Tank;
 use crate::render::effects::{
-    DeviceEffect, EffectSpec, Faded, Need, Observe, Target, Tick, Timing,
+    DeviceEffect, EffectSpec, Faded, Need, Observe, Owner, Target, Tick, Timing,
 };
 
 settings! {
@@ -174,6 +174,7 @@ impl<F: Real> DeviceEffect<F> for BoneShaping<F> {
         }],
         parameters: BoneShapingSettings::TABLE,
         choices: BoneShapingSettings::CHOICES,
+        of: Owner::Knee,
         sides: &[],
     };
 

@@ -15,8 +15,8 @@
 //! Sources: all numbers are estimates; the collapse to a fifth takes 85 ms.
 
 use super::play::{Hold, Limits, Part, Play, short_decay};
-use super::symptom::{Bounds, Change, Hear, Law, Word, sense};
-use super::{EffectSpec, PhaseSpec, Timing};
+use super::symptom::{Bounds, Change, ClinicWords, Hear, Law, Word, sense};
+use super::{EffectSpec, Owner, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
@@ -127,7 +127,11 @@ impl ClaspKnifeSettings {
             let travel_rad = (self.release_deg - self.onset_deg).to_radians().abs();
             self.onset_torque_nm + self.slope_nm_per_rad * travel_rad
         } else {
-            self.release_torque_nm.max(self.onset_torque_nm)
+            // Where it collapses while the play is still elastic, the torque rises on to the
+            // limit of that place.
+            let travel_rad = self.release_torque_nm / self.catch_stiffness_nm_per_rad;
+            let limit_nm = self.onset_torque_nm + self.slope_nm_per_rad * travel_rad;
+            self.release_torque_nm.max(limit_nm)
         }
     }
 }
@@ -197,7 +201,20 @@ impl<F: Real> Law for ClaspKnife<F> {
         needs: &[],
         parameters: ClaspKnifeSettings::TABLE,
         choices: ClaspKnifeSettings::CHOICES,
+        of: Owner::Knee,
         sides: &[],
+    };
+
+    const WORDS: ClinicWords = ClinicWords {
+        title: "Clasp-knife phenomenon",
+        states: &["relaxed", "resistance builds up", "collapsed"],
+        changes: &[
+            (0, 1, Word::Onset, "resistance begins"),
+            (1, 2, Word::Release, "collapse"),
+            (1, 0, Word::Back, "turned back before"),
+            (2, 0, Word::Rearm, "can build again"),
+        ],
+        within: &[],
     };
 
     fn check(s: &ClaspKnifeSettings) -> Result<(), SettingsError> {
@@ -217,6 +234,7 @@ impl<F: Real> Law for ClaspKnife<F> {
             torque_nm: s.largest_torque_nm(),
             slope_nm_per_rad: s.slope_nm_per_rad,
             stiffness_nm_per_rad: s.catch_stiffness_nm_per_rad,
+            is_wall: false,
         }
     }
 
@@ -315,6 +333,10 @@ impl<F: Real> Law for ClaspKnife<F> {
     fn release(&mut self, slew_nm: F) {
         self.play.release(slew_nm);
         self.torque_nm = self.with.sense * self.play.torque_nm();
+    }
+
+    fn is_active(&self) -> bool {
+        false
     }
 
     fn phase(&self) -> u16 {
@@ -470,14 +492,14 @@ impl<F: Real> ClaspKnife<F> {
         let after_nm = if from == F::ZERO {
             travel.decayed(before_nm, with.lost)
         } else {
-            before_nm * short_decay(with.rate * (F::ONE - from))
+            before_nm * short_decay(travel.over_all(with.rate) * (F::ONE - from))
         };
         let after_nm = after_nm.settled();
         let limits = |fraction: F| {
             let decaying_nm = if fraction == F::ONE {
                 after_nm
             } else {
-                before_nm * (with.rate * (fraction - from)).exp()
+                before_nm * (travel.over_all(with.rate) * (fraction - from)).exp()
             };
             Limits {
                 lower_nm: F::ZERO,

@@ -15,8 +15,8 @@
 //! under load (Hidler & Rymer), the first beat the longest; the amplitude is an
 //! estimate.
 
-use super::symptom::{Bounds, Change, Hear, Law, Word, sense};
-use super::{EffectSpec, PhaseSpec, Timing};
+use super::symptom::{Bounds, Change, ClinicWords, Hear, Law, Word, sense};
+use super::{EffectSpec, Owner, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
@@ -213,7 +213,26 @@ impl<F: Real> Law for Clonus<F> {
         needs: &[],
         parameters: ClonusSettings::TABLE,
         choices: ClonusSettings::CHOICES,
+        of: Owner::Knee,
         sides: &[],
+    };
+
+    const WORDS: ClinicWords = ClinicWords {
+        title: "Clonus",
+        states: &[
+            "no beats",
+            "beating",
+            "held without beats",
+            "let go: the last beat runs out",
+        ],
+        changes: &[
+            (0, 1, Word::Start, "quick stretch"),
+            (1, 2, Word::Done, "beats are over"),
+            (1, 0, Word::Stop, "let go"),
+            (1, 3, Word::Stop, "let go"),
+            (3, 1, Word::Start, "quick stretch"),
+        ],
+        within: &[(Word::Beat, "beat")],
     };
 
     fn check(s: &ClonusSettings) -> Result<(), SettingsError> {

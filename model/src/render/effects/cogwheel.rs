@@ -15,8 +15,8 @@
 //! 1981); torques are estimates.
 
 use super::play::{Hold, Limits, Part, Play, dragged};
-use super::symptom::{Bounds, Change, Hear, Law, Word};
-use super::{EffectSpec, PhaseSpec, Timing};
+use super::symptom::{Bounds, Change, ClinicWords, Hear, Law, Word};
+use super::{EffectSpec, Owner, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
@@ -176,7 +176,15 @@ impl<F: Real> Law for Cogwheel<F> {
         needs: &[],
         parameters: CogwheelSettings::TABLE,
         choices: CogwheelSettings::CHOICES,
+        of: Owner::Knee,
         sides: &[],
+    };
+
+    const WORDS: ClinicWords = ClinicWords {
+        title: "Cogwheel rigidity",
+        states: &["between two teeth", "at a tooth"],
+        changes: &[(0, 1, Word::Catch, "catch"), (1, 0, Word::Give, "give")],
+        within: &[],
     };
 
     fn check(s: &CogwheelSettings) -> Result<(), SettingsError> {
@@ -188,7 +196,9 @@ impl<F: Real> Law for Cogwheel<F> {
         Bounds {
             torque_nm: s.torque_nm,
             slope_nm_per_rad: s.elastic_nm_per_rad,
-            stiffness_nm_per_rad: s.torque_nm / s.presliding_deg.to_radians(),
+            stiffness_nm_per_rad: s.torque_nm / s.presliding_deg.to_radians()
+                + s.elastic_nm_per_rad,
+            is_wall: false,
         }
     }
 
@@ -293,6 +303,10 @@ impl<F: Real> Law for Cogwheel<F> {
     fn release(&mut self, slew_nm: F) {
         self.play.release(slew_nm);
         self.elastic_nm = self.elastic_nm - self.elastic_nm.within(slew_nm);
+    }
+
+    fn is_active(&self) -> bool {
+        false
     }
 
     fn phase(&self) -> u16 {

@@ -17,6 +17,8 @@ pub struct Faded<F, E> {
     last_nm: F,
     /// Where it went.
     target: Target,
+    /// Where what is left goes: where it went before.
+    fading_target: Target,
 }
 
 impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Faded<F, E> {
@@ -27,11 +29,17 @@ impl<F: Real, E: DeviceEffect<F>> Switched<F, E> for Faded<F, E> {
             fading_nm: F::ZERO,
             last_nm: F::ZERO,
             target: Target::Joint,
+            fading_target: Target::Joint,
         }
     }
 
     fn change(&mut self, coefficients: &Option<Option<E::Coefficients>>, slew_nm: F) {
         if let Some(coefficients) = *coefficients {
+            if self.fading_target != self.target {
+                // One of them fades; what is older is nearly over.
+                self.fading_nm = F::ZERO;
+                self.fading_target = self.target;
+            }
             self.fading_nm += self.last_nm;
             self.last_nm = F::ZERO;
             self.law = coefficients.map(E::new);
@@ -62,7 +70,7 @@ impl<F: Real, E: DeviceEffect<F>> Adds<F, E> for Faded<F, E> {
             self.last_nm
         } else {
             let fading = self.fade();
-            give(self.target, fading, shown);
+            give(self.fading_target, fading, shown);
             self.last_nm + fading
         }
     }
@@ -121,6 +129,31 @@ mod tests {
                 assert_eq!(shown.torque_nm, 1.0 + fading_nm);
             }
             assert_eq!(after(&mut stage, 0.0, 0.0).0, 0.0);
+        }
+    }
+
+    /// Ringing that is sent elsewhere in its middle fades where it was: on the motor it would be a
+    /// step of torque.
+    #[test]
+    fn what_fades_stays_where_it_was() {
+        let ringing = |output| BoneShapingSettings {
+            output,
+            ..BoneShapingSettings::default()
+        };
+        for (from, to) in [(0, 1), (1, 0)] {
+            let mut stage = Faded::<f32, BoneShaping<f32>>::new(0.01);
+            stage.change(&Some(Some(law(&ringing(from)))), 0.01);
+            after(&mut stage, 0.0, 0.4);
+            let last = (0..40)
+                .map(|_| after(&mut stage, 0.0, 0.0))
+                .next_back()
+                .unwrap();
+            let is_on_motor = |shown: &Shown<f32>| shown.torque_nm != 1.0;
+            assert_eq!(is_on_motor(&last.1), from == 0);
+            stage.change(&Some(Some(law(&ringing(to)))), 0.01);
+            let (fading, shown) = after(&mut stage, 0.0, 0.0);
+            assert!(fading.abs() > 1e-3, "{fading}");
+            assert_eq!(is_on_motor(&shown), from == 0);
         }
     }
 

@@ -52,7 +52,9 @@ use crate::joint::{Parameters, SettingsError};
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
 use crate::render::Shown;
-use crate::render::effects::{DeviceEffect, EffectSpec, Need, Observe, Slewed, Tick, Timing};
+use crate::render::effects::{
+    DeviceEffect, EffectSpec, Need, Observe, Owner, Slewed, Tick, Timing,
+};
 
 settings! {
     /// Assumed friction of the gear, and the share of it to cancel.
@@ -127,6 +129,7 @@ impl<F: Real> DeviceEffect<F> for FrictionCompensation<F> {
         }],
         parameters: FrictionCompensationSettings::TABLE,
         choices: FrictionCompensationSettings::CHOICES,
+        of: Owner::Brace,
         sides: &[],
     };
 

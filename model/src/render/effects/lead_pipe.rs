@@ -13,8 +13,8 @@
 //! torques are estimates.
 
 use super::play::{Hold, Limits, Part, Play};
-use super::symptom::{Bounds, Hear, Law};
-use super::{EffectSpec, PhaseSpec, Timing};
+use super::symptom::{Bounds, ClinicWords, Hear, Law};
+use super::{EffectSpec, Owner, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
@@ -102,7 +102,15 @@ impl<F: Real> Law for LeadPipe<F> {
         needs: &[],
         parameters: LeadPipeSettings::TABLE,
         choices: LeadPipeSettings::CHOICES,
+        of: Owner::Knee,
         sides: &[],
+    };
+
+    const WORDS: ClinicWords = ClinicWords {
+        title: "Lead-pipe rigidity",
+        states: &["resistance builds up or turns over", "even resistance"],
+        changes: &[],
+        within: &[],
     };
 
     fn check(s: &LeadPipeSettings) -> Result<(), SettingsError> {
@@ -114,7 +122,9 @@ impl<F: Real> Law for LeadPipe<F> {
         Bounds {
             torque_nm: s.torque_nm,
             slope_nm_per_rad: s.elastic_nm_per_rad,
-            stiffness_nm_per_rad: s.torque_nm / s.presliding_deg.to_radians(),
+            stiffness_nm_per_rad: s.torque_nm / s.presliding_deg.to_radians()
+                + s.elastic_nm_per_rad,
+            is_wall: false,
         }
     }
 
@@ -172,6 +182,10 @@ impl<F: Real> Law for LeadPipe<F> {
     fn release(&mut self, slew_nm: F) {
         self.play.release(slew_nm);
         self.elastic_nm = self.elastic_nm - self.elastic_nm.within(slew_nm);
+    }
+
+    fn is_active(&self) -> bool {
+        false
     }
 
     fn phase(&self) -> u16 {

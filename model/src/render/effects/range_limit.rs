@@ -19,8 +19,8 @@
 //! Cyriax; the numbers here are derived or estimates.
 
 use super::play::{Hold, Limits, Part, Play};
-use super::symptom::{Bounds, Change, Hear, Law, Word};
-use super::{EffectSpec, PhaseSpec, Timing};
+use super::symptom::{Bounds, Change, ClinicWords, Hear, Law, Word};
+use super::{EffectSpec, Owner, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
@@ -411,7 +411,20 @@ impl<F: Real> Law for RangeLimit<F> {
         needs: &[],
         parameters: RangeLimitSettings::TABLE,
         choices: RangeLimitSettings::CHOICES,
+        of: Owner::Knee,
         sides: &["extension_", "flexion_"],
+    };
+
+    const WORDS: ClinicWords = ClinicWords {
+        title: "End of the range of motion",
+        states: &["free in the range", "in the end-feel", "the end yields"],
+        changes: &[
+            (0, 1, Word::Contact, "end of the range met"),
+            (1, 2, Word::Cap, "the end yields"),
+            (1, 0, Word::Leave, "out of the end"),
+            (2, 0, Word::Leave, "out of the end"),
+        ],
+        within: &[],
     };
 
     fn check(s: &RangeLimitSettings) -> Result<(), SettingsError> {
@@ -435,6 +448,7 @@ impl<F: Real> Law for RangeLimit<F> {
             torque_nm: s.extension_torque_nm.max(s.flexion_torque_nm),
             slope_nm_per_rad: 0.0,
             stiffness_nm_per_rad: extension.spring_nm_per_rad().max(stiffest),
+            is_wall: true,
         }
     }
 
@@ -513,6 +527,10 @@ impl<F: Real> Law for RangeLimit<F> {
         self.extension.play.release(slew_nm);
         self.flexion.play.release(slew_nm);
         self.torque_nm = self.flexion.play.torque_nm() - self.extension.play.torque_nm();
+    }
+
+    fn is_active(&self) -> bool {
+        false
     }
 
     fn phase(&self) -> u16 {

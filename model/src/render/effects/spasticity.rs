@@ -13,8 +13,8 @@
 mod caught;
 mod reflex;
 
-use super::symptom::{Bounds, Hear, Law, sense};
-use super::{EffectSpec, PhaseSpec, Timing};
+use super::symptom::{Bounds, ClinicWords, Hear, Law, Word, sense};
+use super::{EffectSpec, Owner, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
@@ -250,7 +250,27 @@ impl<F: Real> Law for Spasticity<F> {
         needs: &[],
         parameters: SpasticitySettings::TABLE,
         choices: SpasticitySettings::CHOICES,
+        of: Owner::Knee,
         sides: &[],
+    };
+
+    const WORDS: ClinicWords = ClinicWords {
+        title: "Spasticity",
+        states: &[
+            "silent",
+            "caught",
+            "the reflex answers",
+            "the reflex at its largest",
+        ],
+        changes: &[
+            (0, 1, Word::Catch, "catch"),
+            (1, 0, Word::Rearm, "can catch again"),
+            (0, 2, Word::Onset, "the reflex begins"),
+            (2, 3, Word::Cap, "at its largest"),
+            (3, 2, Word::Uncap, "falls again"),
+            (2, 0, Word::Offset, "the reflex ends"),
+        ],
+        within: &[],
     };
 
     fn check(s: &SpasticitySettings) -> Result<(), SettingsError> {
@@ -274,6 +294,7 @@ impl<F: Real> Law for Spasticity<F> {
             } else {
                 0.0
             },
+            is_wall: false,
         }
     }
 

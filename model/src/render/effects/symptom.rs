@@ -56,7 +56,25 @@ crate::named! {
 impl Word {
     /// Whether it is of the play under a symptom, of interest on request.
     pub fn is_of_play(self) -> bool {
-        matches!(self, Self::Flow | Self::Turn | Self::Slack | Self::Take)
+        match self {
+            Self::Flow | Self::Turn | Self::Slack | Self::Take => true,
+            Self::Contact
+            | Self::Leave
+            | Self::Cap
+            | Self::Uncap
+            | Self::Catch
+            | Self::Give
+            | Self::Rearm
+            | Self::Onset
+            | Self::Offset
+            | Self::Release
+            | Self::Back
+            | Self::Start
+            | Self::Beat
+            | Self::Stop
+            | Self::Done
+            | Self::Snap => false,
+        }
     }
 }
 
@@ -158,6 +176,21 @@ impl<F: Real, O: Observe<F>> Hear<F> for Heard<'_, F, O> {
     }
 }
 
+/// A symptom in the words of a clinic, and how its states follow each other: for reports,
+/// no firmware has them.
+#[derive(Clone, Copy, Debug)]
+pub struct ClinicWords {
+    /// Above its charts.
+    pub title: &'static str,
+    /// Its states, in the order of the numbers of its phases; the first one is at
+    /// rest.
+    pub states: &'static [&'static str],
+    /// From one state to another, by an event with this name.
+    pub changes: &'static [(u16, u16, Word, &'static str)],
+    /// Events within a state.
+    pub within: &'static [(Word, &'static str)],
+}
+
 /// What a symptom may ask for in any movement: the limits of the device, the pages of
 /// a report and the supervision by comms are made of the sums.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -168,6 +201,9 @@ pub struct Bounds {
     pub slope_nm_per_rad: f64,
     /// Its stiffness where it is a spring, N·m/rad.
     pub stiffness_nm_per_rad: f64,
+    /// Whether it is a wall that a hand presses against: what keeps it quiet is the gear's
+    /// friction.
+    pub is_wall: bool,
 }
 
 /// The law of a symptom, with its state.
@@ -183,6 +219,9 @@ pub trait Law: Sized {
 
     /// Its description.
     const SPEC: EffectSpec;
+
+    /// Its words in a report.
+    const WORDS: ClinicWords;
 
     /// Checks ranges, and what holds between the settings.
     ///
@@ -226,9 +265,7 @@ pub trait Law: Sized {
     fn release(&mut self, slew_nm: Self::Real);
 
     /// Whether it gives energy: it is then paid from the tank.
-    fn is_active(&self) -> bool {
-        false
-    }
+    fn is_active(&self) -> bool;
 
     /// The number of its phase.
     fn phase(&self) -> u16;

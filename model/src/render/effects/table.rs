@@ -15,6 +15,12 @@ macro_rules! effects {
             { $($addition: $a_law;)* }
         }
 
+        /// The symptoms, in the order of the table.
+        pub const SYMPTOMS: &[(EffectSpec, ClinicWords)] = &[$((
+            <$symptom::$s_law<f64> as Law>::SPEC,
+            <$symptom::$s_law<f64> as Law>::WORDS,
+        )),*];
+
         impl EffectSettings {
             /// Checks each symptom by itself.
             fn check_symptoms(&self) -> Result<(), SettingsError> {
@@ -85,6 +91,15 @@ macro_rules! effects {
             pub fn given<'a>(given: impl Fn(&str) -> Option<Chosen<'a>>) -> Self {
                 Self {
                     $($effect: given(<$effect::$law<f64> as DeviceEffect<f64>>::SPEC.name).map(filled),)*
+                }
+            }
+
+            /// Those of the effect at a place of the table, alone.
+            #[must_use]
+            pub fn only(&self, place: usize) -> Self {
+                let mut here = (0..).map(|other| other == place);
+                Self {
+                    $($effect: self.$effect.filter(|_| here.next() == Some(true)),)*
                 }
             }
 

@@ -13,8 +13,8 @@
 //! specification (Tan et al.); torques in the paper's range; pitches are estimates.
 
 use super::play::{End, Hold, Limits, Part, Play};
-use super::symptom::{Bounds, Change, Hear, Law, Word};
-use super::{EffectSpec, PhaseSpec, Timing};
+use super::symptom::{Bounds, Change, ClinicWords, Hear, Law, Word};
+use super::{EffectSpec, Owner, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
@@ -213,7 +213,15 @@ impl<F: Real> Law for Texture<F> {
         needs: &[],
         parameters: TextureSettings::TABLE,
         choices: TextureSettings::CHOICES,
+        of: Owner::Knee,
         sides: &[],
+    };
+
+    const WORDS: ClinicWords = ClinicWords {
+        title: "Rough joint",
+        states: &["held at an asperity", "slides"],
+        changes: &[],
+        within: &[(Word::Snap, "snap over an asperity")],
     };
 
     fn check(s: &TextureSettings) -> Result<(), SettingsError> {
@@ -245,6 +253,7 @@ impl<F: Real> Law for Texture<F> {
             torque_nm: s.peak_nm,
             slope_nm_per_rad: 0.0,
             stiffness_nm_per_rad: s.stiffness_nm_per_rad,
+            is_wall: false,
         }
     }
 
@@ -319,6 +328,10 @@ impl<F: Real> Law for Texture<F> {
 
     fn release(&mut self, slew_nm: F) {
         self.play.release(slew_nm);
+    }
+
+    fn is_active(&self) -> bool {
+        false
     }
 
     fn phase(&self) -> u16 {

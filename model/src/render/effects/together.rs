@@ -37,7 +37,8 @@ impl EffectSettings {
         }
         if let Some(settings) = &self.friction_compensation {
             settings.validate()?;
-            if self.range_limit.is_some() && settings.share > MOST_SHARE_AT_A_WALL {
+            let has_wall = self.bounds().any(|most| most.is_wall);
+            if has_wall && settings.share > MOST_SHARE_AT_A_WALL {
                 return Err(SettingsError::Contradiction {
                     reason: "friction-compensation: a share above 0.8 leaves too little friction to keep the \
                              wall of range-limit quiet",
@@ -155,7 +156,7 @@ mod tests {
         let bound_nm = all.torque_bound_nm(Some(&joint));
         let slopes = 2.0 + 5.0 + 1.0 + 3.0;
         assert!((bound_nm - sum_nm - slopes * core::f64::consts::PI).abs() < 1e-12);
-        // A blade that falls by its torque has no more, wherever it falls.
+        // A stiff blade that falls by its torque has no more, wherever it falls.
         let by_torque = EffectSettings {
             clasp_knife: Some(ClaspKnifeSettings {
                 trigger: 1,
@@ -166,6 +167,16 @@ mod tests {
             ..EffectSettings::default()
         };
         assert_eq!(by_torque.largest_torque_nm(None), 2.5);
+        // One that is soft collapses before it has come to its limit, and rises on to that.
+        let soft = EffectSettings {
+            clasp_knife: by_torque.clasp_knife.map(|blade| ClaspKnifeSettings {
+                onset_torque_nm: 1.0,
+                catch_stiffness_nm_per_rad: 10.0,
+                ..blade
+            }),
+            ..by_torque
+        };
+        assert_eq!(soft.largest_torque_nm(None), 1.0 + 20.0 * 0.25);
     }
 
     #[test]

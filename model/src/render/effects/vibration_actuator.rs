@@ -56,7 +56,7 @@ use crate::parameters::{Tabled, settings};
 use crate::real::Real;
 use crate::render::Shown;
 use crate::render::effects::{
-    Adds, DeviceEffect, EffectSpec, Need, Observe, PhaseSpec, Switched, Target, Tick, Timing,
+    Adds, DeviceEffect, EffectSpec, Need, Observe, Owner, PhaseSpec, Switched, Target, Tick, Timing,
 };
 
 settings! {
@@ -399,6 +399,7 @@ impl<F: Real> DeviceEffect<F> for VibrationActuator<F> {
         }],
         parameters: VibrationActuatorSettings::TABLE,
         choices: VibrationActuatorSettings::CHOICES,
+        of: Owner::Brace,
         sides: &[],
     };
 

@@ -125,7 +125,7 @@ impl<'a> Symptom<'a> {
             "lead-pipe" => vec![part(LeadPipe::read(reader)?, 1.0, motion)],
             "cogwheel" => vec![part(Cogwheel::read(reader)?, 1.0, motion)],
             "texture" => vec![part(Texture::read(reader)?, 1.0, motion)],
-            muscular => {
+            muscular @ ("spasticity" | "clasp-knife" | "clonus") => {
                 let s = reader.muscles()?;
                 let is_reflex = muscular == "spasticity"
                     && reader.choice("form", ("catch", false), &[("reflex", true)])?;
@@ -136,6 +136,7 @@ impl<'a> Symptom<'a> {
                     (_, false) => part(StretchCatch::read(reader, s)?, s, motion),
                 }]
             }
+            unknown => return Err(SymptomError::Unknown(unknown.to_owned())),
         };
         Ok(Self { parts })
     }

@@ -169,7 +169,15 @@ fn with_sensor<F: Precise, S: Sensor<F> + 'static>(
         Solver::ExactBreak => maker.drive::<F, ExactBreak>(),
         Solver::ExactInterpolated => maker.drive::<F, Interpolated>(),
         Solver::ExactEvents => maker.drive::<F, ExactEvents>(),
-        _ => maker.drive::<F, EndOfStep>(),
+        // But for `exact` they are refused under `frozen`.
+        Solver::Exact
+        | Solver::Euler
+        | Solver::SemiImplicitEuler
+        | Solver::Verlet
+        | Solver::Rk4
+        | Solver::ImplicitEuler
+        | Solver::Rk4Events
+        | Solver::ExactHermite => maker.drive::<F, EndOfStep>(),
     }
 }
 

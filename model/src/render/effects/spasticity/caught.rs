@@ -213,7 +213,7 @@ impl<F: Real> Caught<F> {
         let after_nm = if from == F::ZERO {
             travel.decayed(before_nm, with.lost)
         } else {
-            before_nm * short_decay(with.rate * (F::ONE - from))
+            before_nm * short_decay(travel.over_all(with.rate) * (F::ONE - from))
         };
         catch.decaying_nm = after_nm.settled();
         let part = Part::since(sense, from);
@@ -223,7 +223,7 @@ impl<F: Real> Caught<F> {
             let decaying_nm = if fraction == F::ONE {
                 after_nm
             } else {
-                before_nm * (with.rate * (fraction - from)).exp()
+                before_nm * (travel.over_all(with.rate) * (fraction - from)).exp()
             };
             Limits {
                 lower_nm: F::ZERO,

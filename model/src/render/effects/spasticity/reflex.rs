@@ -30,10 +30,10 @@ pub struct ReflexCoefficients<F> {
     /// Whole ticks of the delay, and the rest of one.
     delay: usize,
     delay_rest: F,
-    /// y ← a·y + c0·u0 + c1·u1.
-    keep: F,
-    first: F,
-    second: F,
+    /// e = y − u ← e − lost·e − mean·(u1 − u0): y itself would come to rest short of u, where
+    /// what it gains in a tick is less than its last digit.
+    lost: F,
+    mean: F,
 }
 
 impl<F: Real> ReflexCoefficients<F> {
@@ -48,13 +48,13 @@ impl<F: Real> ReflexCoefficients<F> {
         let whole = libm::floor(ticks + 1e-9);
         let delay = usize::try_from(whole.whole()).unwrap_or(usize::MAX);
         if delay > REMEMBERED.saturating_sub(2) {
-            return Err(SettingsError::Step {
-                step_s: timing.step_s,
+            return Err(SettingsError::Contradiction {
+                reason: "spasticity: in the form reflex delay_s may be 2046 steps at most: a shorter delay, or a \
+                         longer step",
             });
         }
         let x = timing.step_s / s.activation_s;
-        let keep = libm::exp(-x);
-        let mean = -libm::expm1(-x) / x;
+        let lost = -libm::expm1(-x);
         Ok(Self {
             scale: timing.scale()?,
             threshold,
@@ -67,9 +67,8 @@ impl<F: Real> ReflexCoefficients<F> {
             }),
             delay,
             delay_rest: F::from_f64((ticks - whole).max(0.0)),
-            keep: F::from_f64(keep),
-            first: F::from_f64(mean - keep),
-            second: F::from_f64(1.0 - mean),
+            lost: F::from_f64(lost),
+            mean: F::from_f64(lost / x),
         })
     }
 }
@@ -93,8 +92,8 @@ pub(super) struct Reflex<F> {
     remembered: usize,
     /// u(t − τd) at the end of the last tick, N·m.
     told_nm: F,
-    /// y, N·m.
-    answer_nm: F,
+    /// e, by how much y differs from it, N·m.
+    lag_nm: F,
     drive: Drive,
 }
 
@@ -106,7 +105,7 @@ impl<F: Real> Reflex<F> {
             latest: 0,
             remembered: 0,
             told_nm: F::ZERO,
-            answer_nm: F::ZERO,
+            lag_nm: F::ZERO,
             drive: Drive::Silent,
         }
     }
@@ -114,12 +113,12 @@ impl<F: Real> Reflex<F> {
     pub(super) fn rest(&mut self) {
         self.remembered = 0;
         self.told_nm = F::ZERO;
-        self.answer_nm = F::ZERO;
+        self.lag_nm = F::ZERO;
         self.drive = Drive::Silent;
     }
 
     pub(super) fn torque_nm(&self) -> F {
-        self.with.threshold.sense * self.answer_nm
+        self.with.threshold.sense * (self.told_nm + self.lag_nm)
     }
 
     pub(super) fn phase(&self) -> u16 {
@@ -140,7 +139,8 @@ impl<F: Real> Reflex<F> {
     }
 
     pub(super) fn release(&mut self, slew_nm: F) {
-        self.answer_nm = self.answer_nm - self.answer_nm.within(slew_nm);
+        let answer_nm = self.told_nm + self.lag_nm;
+        self.lag_nm -= answer_nm.within(slew_nm);
     }
 
     /// Follows the joint; returns the torque, N·m. Not inlined: the form `catch` then saves
@@ -185,9 +185,8 @@ impl<F: Real> Reflex<F> {
         self.remember(nm);
         let told_nm = self.told();
         let with = &self.with;
-        self.answer_nm =
-            (with.keep * self.answer_nm + with.first * self.told_nm + with.second * told_nm)
-                .settled();
+        let left_nm = self.lag_nm - with.lost * self.lag_nm;
+        self.lag_nm = (left_nm - with.mean * (told_nm - self.told_nm)).settled();
         self.told_nm = told_nm;
     }
 
