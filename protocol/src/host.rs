@@ -184,7 +184,6 @@ pub struct Counters {
 
 /// Errors of requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema)]
-#[non_exhaustive]
 pub enum Refusal {
     /// Invalid values.
     Values(ValueError),

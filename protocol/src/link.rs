@@ -173,7 +173,6 @@ pub struct Outcome {
 
 /// Errors of orders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema)]
-#[non_exhaustive]
 pub enum DriveRefusal {
     /// No parameters were received yet.
     NoParameters,

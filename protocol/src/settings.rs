@@ -18,7 +18,6 @@ use serde::{Deserialize, Serialize};
 
 /// Errors of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema)]
-#[non_exhaustive]
 pub enum ValueError {
     /// The parameter with this id is out of range, NaN, or no valid choice.
     OutOfRange {

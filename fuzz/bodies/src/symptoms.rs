@@ -35,7 +35,7 @@ const MOST_TICKS: usize = 4096;
 const MOST_WORDS: usize = 8 * SYMPTOMS;
 
 /// Places of the symptoms in the table of effects.
-const SYMPTOMS: usize = 7;
+const SYMPTOMS: usize = crepitus_model::render::effects::SYMPTOMS.len();
 
 /// Checks the laws.
 ///
@@ -116,41 +116,6 @@ fn settings(bytes: &mut Bytes<'_>) -> EffectSettings {
     })
 }
 
-/// The same with one symptom alone.
-fn alone(settings: &EffectSettings, place: usize) -> EffectSettings {
-    let none = EffectSettings::default();
-    match place {
-        0 => EffectSettings {
-            range_limit: settings.range_limit,
-            ..none
-        },
-        1 => EffectSettings {
-            lead_pipe: settings.lead_pipe,
-            ..none
-        },
-        2 => EffectSettings {
-            cogwheel: settings.cogwheel,
-            ..none
-        },
-        3 => EffectSettings {
-            spasticity: settings.spasticity,
-            ..none
-        },
-        4 => EffectSettings {
-            clasp_knife: settings.clasp_knife,
-            ..none
-        },
-        5 => EffectSettings {
-            clonus: settings.clonus,
-            ..none
-        },
-        _ => EffectSettings {
-            texture: settings.texture,
-            ..none
-        },
-    }
-}
-
 /// What one symptom may show.
 #[derive(Clone, Copy, Debug, Default)]
 struct Bounds {
@@ -169,7 +134,7 @@ struct Bounds {
 
 impl Bounds {
     fn of(settings: &EffectSettings, place: usize) -> Self {
-        let alone = alone(settings, place);
+        let alone = settings.only(place);
         let largest_nm = alone.largest_torque_nm(None);
         let elastic = [
             alone.lead_pipe.map_or(0.0, |s| s.elastic_nm_per_rad),

@@ -75,11 +75,6 @@ impl fmt::Display for Refused {
             Refusal::Aborted => {
                 write!(f, "`{request}` was aborted by a stop, a disarm or a fault")
             }
-            _ => write!(
-                f,
-                "`{request}` is rejected for a reason unknown to this tool: \
-                 install the tool of the device's version"
-            ),
         }
     }
 }
@@ -165,10 +160,6 @@ impl Refused {
                 f,
                 "{} can only change while disarmed: disarm first",
                 self.setting(id)
-            )?,
-            _ => f.write_str(
-                "the values are rejected for a reason unknown to this tool: \
-                 install the tool of the device's version",
             )?,
         }
         f.write_str("; nothing was changed")
@@ -256,11 +247,6 @@ fn drive_text(
         DriveRefusal::ChirpPlaying => write!(
             f,
             "the drive rejects `{request}`: another chirp is being played; wait for its end"
-        ),
-        _ => write!(
-            f,
-            "the drive rejects `{request}` for a reason unknown to this tool: \
-             install the tool of the device's version"
         ),
     }
 }

@@ -79,16 +79,25 @@ impl RequestKind {
     /// Whether the device executes it as a job: one at a time, for half a second
     /// at most.
     pub(crate) fn is_job(self) -> bool {
-        matches!(
-            self,
+        match self {
             Self::Commit
-                | Self::Save
-                | Self::Zero
-                | Self::Arm
-                | Self::ClearFault
-                | Self::ReadCrash
-                | Self::PlayChirp
-        )
+            | Self::Save
+            | Self::Zero
+            | Self::Arm
+            | Self::ClearFault
+            | Self::ReadCrash
+            | Self::PlayChirp => true,
+            Self::Hello
+            | Self::Stop
+            | Self::Reboot
+            | Self::Open
+            | Self::Status
+            | Self::Counters
+            | Self::Parameters
+            | Self::Disarm
+            | Self::Subscribe
+            | Self::Unsubscribe => false,
+        }
     }
 
     pub(crate) fn timing(self) -> Timing {

@@ -4,9 +4,6 @@
 import { MARK } from "./bins.js";
 import { text, textOr } from "./strings.js";
 
-// The phases in which an effect is at rest need no shade.
-const AT_REST = new Set(["free", "held", "low", "silent", "out", "ready", "rest"]);
-
 const MARKS = [
   { mark: MARK.slip, key: "slip", colour: "--slip", pattern: "solid" },
   { mark: MARK.limited, key: "limited", colour: "--limited", pattern: "rising" },
@@ -17,22 +14,23 @@ const MARKS = [
 ];
 
 const HUES = ["--effect-1", "--effect-2", "--effect-3", "--effect-4", "--effect-5", "--effect-6"];
-const PATTERNS = ["solid", "rising", "falling", "crossed"];
+const PATTERNS = ["solid", "rising", "falling", "crossed", "upright"];
 
-/** All that can be shaded, for these states of the server's hello. */
+/** All that can be shaded, for these states of the server's hello, in which none is at rest. */
 export function shadesOf(states) {
   const effects = [...new Set(states.map((state) => state.effect))];
   const seen = new Map();
   const shades = [];
   states.forEach(({ effect, phase }, bit) => {
-    if (AT_REST.has(phase)) return;
-    const nth = seen.get(effect) ?? 0;
-    seen.set(effect, nth + 1);
+    // Effects that share a hue have the next patterns.
+    const hue = HUES[effects.indexOf(effect) % HUES.length];
+    const nth = seen.get(hue) ?? 0;
+    seen.set(hue, nth + 1);
     shades.push({
       bit: 1 << bit,
       effect,
       phase,
-      colour: HUES[effects.indexOf(effect) % HUES.length],
+      colour: hue,
       pattern: PATTERNS[nth % PATTERNS.length],
     });
   });

@@ -34,12 +34,29 @@ impl Strings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_live::STATES;
+    use crepitus_protocol::parameters::PARAMETERS;
+    use crepitus_scene::preset::Disorder;
     use std::collections::BTreeSet;
 
     fn keys(language: &str) -> BTreeSet<String> {
         let texts = Strings::of(language).texts;
         let is_own = |key: &&String| !key.starts_with("preset.");
         texts.keys().filter(is_own).cloned().collect()
+    }
+
+    /// What the device has more of than the page has texts for would be shown by its identifier.
+    #[test]
+    fn what_a_device_has_is_named() {
+        let known = keys("en");
+        let groups = PARAMETERS.iter().map(|p| format!("group.{}", p.group));
+        let states = STATES
+            .iter()
+            .map(|state| format!("state.{}.{}", state.effect, state.phase));
+        let disorders = Disorder::ALL.map(|disorder| format!("disorder.{}", disorder.name()));
+        for key in groups.chain(states).chain(disorders) {
+            assert!(known.contains(&key), "{key}");
+        }
     }
 
     #[test]

@@ -31,7 +31,17 @@ impl LeftOpen {
             Operation::Disarm => (self.asked, self.renewed) = (None, None),
             Operation::Subscribe => self.is_subscribed = true,
             Operation::Unsubscribe => self.is_subscribed = false,
-            _ => {}
+            Operation::Status
+            | Operation::Counters
+            | Operation::Parameters
+            | Operation::Commit { .. }
+            | Operation::Save
+            | Operation::Zero
+            | Operation::ClearFault
+            | Operation::Open
+            | Operation::ReadCrash { .. }
+            // The drive ends it by itself.
+            | Operation::PlayChirp(_) => {}
         }
         self.last = Some((request.session, request.nonce, request.number));
     }

@@ -154,7 +154,10 @@ fn a_line_that_spoils_a_byte_in_five_hundred_is_slow_and_right() {
     }
     assert!(client.tally().repeats > 3, "{:?}", client.tally());
     assert!(client.tally().discarded_frames > 0);
-    let (_, values) = client.parameters().unwrap();
+    // The longest answer there is: a quarter of them arrives whole.
+    let answers = (0..10).map(|_| client.parameters());
+    let answer = answers.flatten().next();
+    let (_, values) = answer.expect("in one of a hundred tries");
     assert_eq!(values.get(id::STATIC_TORQUE), Some(torque));
 }
 

@@ -7,6 +7,7 @@ use crepitus_board::values::values;
 use crepitus_emulator::cycles::Cycles;
 use crepitus_emulator::mcu::{Step, Watch};
 use crepitus_emulator::{Mcu, Time};
+use crepitus_model::render::effects;
 use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{Revision, Values, parameters};
@@ -149,7 +150,24 @@ pub(crate) const CASES: [Case; 10] = [
 const GIVE_ENERGY: [&str; 2] = ["clonus", "reflex"];
 
 /// How many of them are different symptoms: the first ones.
-pub(crate) const SYMPTOMS: usize = 7;
+pub(crate) const SYMPTOMS: usize = effects::SYMPTOMS.len();
+
+#[test]
+fn every_symptom_has_a_case() {
+    let of_table = effects::SYMPTOMS.iter().map(|(spec, _)| spec.name);
+    let first = CASES[..SYMPTOMS].iter().map(|case| case.symptom);
+    assert!(
+        first.eq(of_table),
+        "the first cases are the symptoms of the table, in its order"
+    );
+    for case in &CASES[SYMPTOMS..] {
+        assert!(
+            CASES[..SYMPTOMS]
+                .iter()
+                .any(|other| other.symptom == case.symptom)
+        );
+    }
+}
 
 /// Crepitus, bone shaping, and these.
 pub(crate) fn values_of(cases: &[&Case]) -> Values {

@@ -22,6 +22,17 @@ pub(super) fn with_locator<F: Real, W: WithLocator<F>>(subject: Subject, with: W
         Rung::Ladder(Solver::ExactBreak) => with.run::<ExactBreak>(),
         Rung::Ladder(Solver::ExactInterpolated) => with.run::<Interpolated>(),
         Rung::Ladder(Solver::ExactEvents) => with.run::<ExactEvents>(),
-        _ => with.run::<EndOfStep>(),
+        // But for `exact` they are refused under `frozen`, or have no joint.
+        Rung::Reference
+        | Rung::Ladder(
+            Solver::Exact
+            | Solver::Euler
+            | Solver::SemiImplicitEuler
+            | Solver::Verlet
+            | Solver::Rk4
+            | Solver::ImplicitEuler
+            | Solver::Rk4Events
+            | Solver::ExactHermite,
+        ) => with.run::<EndOfStep>(),
     }
 }

@@ -12,9 +12,8 @@ use crate::sampling::Sampling;
 use crepitus_ladder::{Plan, Subject};
 use crepitus_model::SettingsError;
 use crepitus_model::control::encoder::EncoderSettings;
-use crepitus_model::render::effects::SPECS;
+use crepitus_model::render::effects::IS_SYMPTOM;
 use crepitus_plant::encoder::Encoder;
-use crepitus_scene::reference::symptoms::NAMES;
 
 /// Where hard inputs begin, degrees: at the walls, thresholds and releases of a symptom at
 /// its defaults. Teeth and asperities are at every 7.5° and about every 1.5°.
@@ -32,9 +31,7 @@ pub(super) fn is_symptom(subject: Subject) -> bool {
     let Subject::Effect(place, _) = subject else {
         return false;
     };
-    SPECS
-        .get(place)
-        .is_some_and(|spec| NAMES.contains(&spec.name))
+    IS_SYMPTOM.get(place) == Some(&true)
 }
 
 /// The tasks of a symptom.
