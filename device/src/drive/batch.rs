@@ -6,12 +6,16 @@
 
 use crate::counters::Counters;
 use crate::drive::command::milliamperes;
+use crate::drive::emf_check;
 use crepitus_protocol::Revision;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::telemetry::{
     BLOCK_SAMPLES, BLOCK_TICKS, Block, BlockFlags, COIL_CURRENTS, COIL_TICKS, CoilCurrent,
     EffectPhases, Sample,
 };
+
+/// Ticks of a window of the back-EMF check.
+const WINDOW: usize = emf_check::TICKS as usize;
 
 /// Blocks that may be queued for the link.
 pub const QUEUE_BLOCKS: usize = 4;
@@ -113,6 +117,12 @@ impl Batch {
     /// True if the next sample begins a block.
     pub fn begins_block(&self) -> bool {
         self.filled == 0
+    }
+
+    /// True if a window of the back-EMF check that begins with the next sample ends within a
+    /// block, and not with it.
+    pub fn begins_window(&self) -> bool {
+        self.filled % WINDOW == 1
     }
 
     /// True if the next sample ends a block.

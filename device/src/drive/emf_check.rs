@@ -14,9 +14,11 @@
 
 use crate::drive::prepare::MotorPlan;
 use crepitus_protocol::TICK_S;
+use crepitus_protocol::telemetry::BLOCK_SAMPLES;
 
-/// Ticks of a window.
-const TICKS: u8 = 4;
+/// Ticks of a window. A block of telemetry is several.
+pub(crate) const TICKS: u8 = 4;
+const _: () = assert!(BLOCK_SAMPLES.is_multiple_of(TICKS as usize));
 const SHARE: f32 = 1.0 / TICKS as f32;
 
 /// Slack, rad/s: 0.18 are a count of the encoder.
@@ -51,20 +53,24 @@ pub struct EmfCheck {
 }
 
 impl EmfCheck {
-    /// Adds a tick; true if two windows contradict. `None`, if a value of the tick
-    /// is not known, begins another window.
+    /// Adds a tick; true if two windows contradict. After a tick with a value that is not
+    /// known, `None`, the next window begins where it `may_begin`: one that ended with a block
+    /// of telemetry would do so for ever, in the most expensive tick that there is.
     pub fn contradicts(
         &mut self,
         tick: Option<Tick>,
         motor: &MotorPlan,
         rad_per_count: f32,
+        may_begin: impl FnOnce() -> bool,
     ) -> bool {
         let Some(tick) = tick else {
             self.ticks = None;
             return false;
         };
         let Some(ticks) = self.ticks else {
-            self.begin(&tick);
+            if may_begin() {
+                self.begin(&tick);
+            }
             return false;
         };
         let ticks = ticks.saturating_add(1);
@@ -138,7 +144,7 @@ mod tests {
                 current_a,
                 count: i32::MAX.wrapping_add((angle_rad / RAD_PER_COUNT).floor() as i32),
             });
-            check.contradicts(Some(tick), &motor, RAD_PER_COUNT)
+            check.contradicts(Some(tick), &motor, RAD_PER_COUNT, || true)
         })
     }
 
@@ -196,7 +202,7 @@ mod tests {
                     count: 0,
                     ..fits(*n)
                 };
-                check.contradicts(known(*n, stands), &motor, RAD_PER_COUNT)
+                check.contradicts(known(*n, stands), &motor, RAD_PER_COUNT, || true)
             });
             // A window needs five ticks in a row.
             assert_eq!(found.is_none(), period < 6, "one in {period}: {found:?}");
@@ -204,7 +210,10 @@ mod tests {
             let mut check = EmfCheck::default();
             for n in 0..400 {
                 let tick = known(n, fits(n));
-                assert!(!check.contradicts(tick, &motor, RAD_PER_COUNT), "{period}");
+                assert!(
+                    !check.contradicts(tick, &motor, RAD_PER_COUNT, || true),
+                    "{period}"
+                );
             }
         }
     }
@@ -221,7 +230,7 @@ mod tests {
                     count: 0,
                 };
                 assert!(
-                    !check.contradicts(Some(tick), &motor, RAD_PER_COUNT),
+                    !check.contradicts(Some(tick), &motor, RAD_PER_COUNT, || true),
                     "{at}"
                 );
             }

@@ -98,8 +98,9 @@ impl Command {
                 current_a,
                 count: rendered.count,
             });
+        let (motor, batch) = (self.motor.plan(), &self.batch);
         self.emf_check
-            .contradicts(tick, self.motor.plan(), self.rad_per_count)
+            .contradicts(tick, motor, self.rad_per_count, || batch.begins_window())
     }
 
     /// Checks that a floating bridge has no current: a shorted switch and a diode
