@@ -1,5 +1,6 @@
 use super::*;
 use crate::scene::{Overrides, Scene};
+use crepitus_model::control::device_limits::RangeSettings;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::render::effects::friction_compensation::{
@@ -130,6 +131,27 @@ fn capsular_is_firm_in_extension_and_soft_in_flexion() {
             let k = feel.spring_nm_per_rad();
             assert!((k / spring - 1.0).abs() < 0.01, "{name}: {k}");
         }
+    }
+}
+
+/// Beyond, the device's torque fades to nothing, so an end there would be weaker than its preset says.
+#[test]
+fn every_end_has_its_whole_torque_within_a_devices_range() {
+    let range = RangeSettings::default();
+    let whole = range.least_deg + range.fade_deg..=range.most_deg - range.fade_deg;
+    for preset in shipped() {
+        let (Some(ends), name) = (preset.effect_settings().range_limit, &preset.name) else {
+            continue;
+        };
+        let cap_deg = |feel: EndFeel| feel.cap_rad().to_degrees();
+        let extension_deg = ends.extension_limit_deg - cap_deg(ends.extension());
+        assert!(whole.contains(&extension_deg), "{name}: {extension_deg}");
+        let flexion_deg = ends.flexion_limit_deg + cap_deg(ends.flexion());
+        let is_free = ends.flexion_limit_deg >= range.most_deg;
+        assert!(
+            is_free || whole.contains(&flexion_deg),
+            "{name}: {flexion_deg}"
+        );
     }
 }
 
