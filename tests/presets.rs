@@ -385,7 +385,7 @@ Spasticity, MAS 2, as a stretch reflex makes it
   feel for  a fast stretch is answered with a push, a moment late; it pushes back when the hand stops
   evidence  estimate
   source    grades: Bohannon and Smith 1987; gain: McCrea et al. 2003, speed: Levin and Feldman 2003 (elbows); \
-threshold is an estimate
+delays: De Groote et al. 2018; threshold is an estimate
 
 [effects.spasticity]
                    value  unit     evidence  meaning

@@ -156,6 +156,20 @@ fn every_end_has_its_whole_torque_within_a_devices_range() {
 }
 
 #[test]
+fn a_source_names_whom_a_sourced_number_is_from() {
+    for (kind, author) in [
+        ("-reflex", "De Groote"),
+        ("mas-4-lead-pipe", "De Groote"),
+        ("capsular", "Riener and Edrich"),
+    ] {
+        for preset in shipped().iter().filter(|p| p.name.contains(kind)) {
+            let source = preset.source.as_deref().unwrap();
+            assert!(source.contains(author), "{}: {source}", preset.name);
+        }
+    }
+}
+
+#[test]
 fn grades_of_a_scale_rise() {
     let rising: [(&str, &str, &[&str]); 6] = [
         (
