@@ -210,6 +210,14 @@ fn lasted(bout: &Bout, beats_are_told: bool) -> String {
         _ => bout.last_s,
     };
     let length_s = until_s - bout.start.time_s;
+    // Held longer, the muscle might have beaten.
+    if beats_are_told && bout.beats == 0 {
+        match bout.end {
+            Some((Word::Done, _)) => {}
+            Some(_) => return "let go before the first beat: no grade".to_owned(),
+            None => return "the record ends before the first beat: no grade".to_owned(),
+        }
+    }
     let (grade, words) = match length_s {
         _ if beats_are_told && bout.beats == 0 => (0, "no reaction"),
         s if s < 3.0 => (1, "mild, less than 3 s"),
@@ -222,13 +230,13 @@ fn lasted(bout: &Bout, beats_are_told: bool) -> String {
         n => format!("{n} beats"),
     };
     let end = match bout.end {
-        Some((Word::Done, _)) => "ended by itself",
+        Some((Word::Done, _)) => "ended by itself;",
         Some(_) => "ended as the muscle was let go, so at least",
         None if !beats_are_told => return format!("{beats}, went on to the end"),
         None => "went on to the end, so at least",
     };
     format!(
-        "{beats} in {} s, {end}; SCATS {grade}: {words}",
+        "{beats} in {} s, {end} SCATS {grade}: {words}",
         fixed(length_s, 1)
     )
 }
@@ -291,12 +299,27 @@ mod tests {
             (
                 bout(20, 5.0, stop),
                 true,
-                "20 beats in 4.0 s, ended as the muscle was let go, so at least; SCATS 2: moderate, 3 to 10 s",
+                "20 beats in 4.0 s, ended as the muscle was let go, so at least SCATS 2: moderate, 3 to 10 s",
             ),
             (
                 bout(0, 1.0, stop),
                 true,
-                "0 beats in 0.0 s, ended as the muscle was let go, so at least; SCATS 0: no reaction",
+                "let go before the first beat: no grade",
+            ),
+            (
+                bout(0, 1.0, None),
+                true,
+                "the record ends before the first beat: no grade",
+            ),
+            (
+                bout(0, 1.0, done),
+                true,
+                "0 beats in 0.0 s, ended by itself; SCATS 0: no reaction",
+            ),
+            (
+                bout(20, 5.0, None),
+                true,
+                "20 beats in 4.0 s, went on to the end, so at least SCATS 2: moderate, 3 to 10 s",
             ),
             // With crepitus or another disorder in the torque.
             (
