@@ -351,12 +351,21 @@ impl Knee {
     /// As [`Preset::read`].
     pub fn read(file: &Path) -> Result<Self, SceneError> {
         let text = crate::scene::text_of(file)?;
-        if Document::parse(file, &text)?.section().has("version") {
+        let document = Document::parse(file, &text)?;
+        let root = document.section();
+        if root.has("version") {
             let scene = Scene::parse(file, &text, &Overrides::default())?;
-            Ok(Self::Scene(Box::new(scene)))
-        } else {
-            Ok(Self::Preset(Box::new(Preset::parse(file, &text)?)))
+            return Ok(Self::Scene(Box::new(scene)));
         }
+        // No preset has them, so the line was forgotten.
+        if root.has("motion") || root.has("solver") {
+            return Err(root.key_error(
+                "version",
+                "this key is missing: a file with `motion` or `solver` is a scene, and a scene needs `version = 1` as \
+                 its first line",
+            ));
+        }
+        Ok(Self::Preset(Box::new(Preset::parse(file, &text)?)))
     }
 }
 
