@@ -449,6 +449,7 @@ fn a_scene_names_presets_that_have_the_effect() {
             &[
                 "line 11: `effects.clonus.preset`",
                 "allowed are scats-1-clonus",
+                "your own presets",
             ][..],
         ),
         (

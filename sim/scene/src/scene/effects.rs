@@ -102,7 +102,14 @@ fn base<'p>(
         .filter(|preset| preset.has(effect.name))
         .map(|preset| (preset.name.as_str(), preset))
         .collect();
-    section.optional_choice("preset", &choices)
+    let named = section.optional_choice("preset", &choices);
+    named.map_err(|error| SceneError {
+        message: format!(
+            "{}; your own presets cannot be named here, but you can copy the values from the file of one",
+            error.message
+        ),
+        ..error
+    })
 }
 
 /// The key with which a section gives a parameter or a choice, if it does: its own,
