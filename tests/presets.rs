@@ -295,6 +295,10 @@ fn a_file_is_a_preset_a_fragment_or_a_scene() {
     let leg = write("leg.toml", "[effects.texture]\n\n[effects.limb]\n");
     let typo = write("typo.toml", "[effects.texture]\npeak = 1\n");
     let broken = write("broken.toml", "[effects.texture\n");
+    let forgotten = write(
+        "forgotten.toml",
+        "title = \"x\"\ndescription = \"x\"\n[motion]\n[solver]\n[effects.texture]\n",
+    );
     for (arguments, parts) in [
         (
             &["params", "apply", &leg][..],
@@ -317,6 +321,10 @@ fn a_file_is_a_preset_a_fragment_or_a_scene() {
             &["MAS 0 is a knee without spasticity"],
         ),
         (&["params", "diff", "updrs-0-cogwheel"], &["UPDRS 0"]),
+        (
+            &["params", "apply", &forgotten],
+            &["forgotten.toml", "needs `version = 1`"],
+        ),
         (
             &["params", "apply", "no-such"],
             &["`crepitus presets`", "`crepitus scenes`"],
@@ -418,6 +426,21 @@ fn the_folder_is_the_users_configuration() {
         let output = command.output().unwrap();
         assert!(output.status.success(), "{}", stderr(&output));
         assert!(home.path().join(file).is_file(), "{file}");
+    }
+}
+
+#[test]
+fn a_folder_of_its_name_does_not_hide_a_scene_that_ships() {
+    let knee = Knee::new();
+    let folder = knee.served.home.path();
+    fs::create_dir(folder.join("slow-examination")).unwrap();
+    for arguments in [
+        &["params", "apply", "slow-examination"][..],
+        &["run", "slow-examination", "--set", "duration_s=0.1"],
+    ] {
+        let mut command = knee.served.command(arguments);
+        let output = command.current_dir(folder).output().unwrap();
+        assert!(output.status.success(), "{}", stderr(&output));
     }
 }
 

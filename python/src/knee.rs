@@ -15,7 +15,7 @@ pub(crate) fn knee(what: &Path) -> PyResult<Knee> {
         return Ok(Knee::Preset(Box::<Preset>::new(preset.clone())));
     }
     let failed = |error| errors::scene(error, false);
-    if what.exists() {
+    if what.exists() && Shipped::meant_by(what).is_none() {
         return Knee::read(what).map_err(failed);
     }
     match Shipped::find(what) {

@@ -88,6 +88,11 @@ impl Shipped {
         SHIPPED.iter().find(|s| s.name == name)
     }
 
+    /// The scene of this name, unless it is that of a file, which goes first; a folder does not.
+    pub fn meant_by(path: &Path) -> Option<&'static Self> {
+        Self::find(path).filter(|_| !path.is_file())
+    }
+
     /// Where the file stands in the repository.
     pub fn file(&self) -> PathBuf {
         PathBuf::from(format!("scenes/{}.toml", self.name))
@@ -136,18 +141,16 @@ impl Source {
         {
             return Self::of_summary(path);
         }
-        let (file, text) = if path.exists() {
-            (path.to_owned(), text_of(path)?)
-        } else {
-            let shipped = Shipped::find(path).ok_or_else(|| {
-                whole(
-                    path,
-                    "there is no such file, and no such scene ships: `crepitus scenes` lists those that do",
-                )
-            })?;
-            (shipped.file(), shipped.text.to_owned())
-        };
-        Ok(Self::of_text(file, text))
+        if let Some(shipped) = Shipped::meant_by(path) {
+            return Ok(Self::of_text(shipped.file(), shipped.text.to_owned()));
+        }
+        if !path.exists() {
+            return Err(whole(
+                path,
+                "there is no such file, and no such scene ships: `crepitus scenes` lists those that do",
+            ));
+        }
+        Ok(Self::of_text(path.to_owned(), text_of(path)?))
     }
 
     /// The text of a scene; `file` names it.

@@ -28,7 +28,8 @@ impl Source {
             return Ok(Self::Preset(Box::new(preset)));
         }
         let is_summary = what.extension().is_some_and(|e| e == "json");
-        if what.exists() && !is_summary {
+        let shipped = Shipped::meant_by(what);
+        if what.exists() && !is_summary && shipped.is_none() {
             return match Knee::read(what).map_err(Failure::input)? {
                 Knee::Preset(preset) => Ok(Self::Preset(preset)),
                 Knee::Scene(scene) => Ok(Self::Scene(scene)),
@@ -37,7 +38,7 @@ impl Source {
         if let Some(text) = name.and_then(own_presets::grade_0) {
             return Err(Failure::Input(text));
         }
-        if !is_summary && Shipped::find(what).is_none() {
+        if !is_summary && shipped.is_none() {
             return Err(Failure::Input(format!(
                 "{}: there is no such file, no such preset and no such scene: `crepitus presets` and `crepitus scenes` \
                  list those that ship",
