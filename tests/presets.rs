@@ -321,6 +321,14 @@ fn a_file_is_a_preset_a_fragment_or_a_scene() {
             &["MAS 0 is a knee without spasticity"],
         ),
         (&["params", "diff", "updrs-0-cogwheel"], &["UPDRS 0"]),
+        (&["params", "apply", "UPDRS-0"], &["UPDRS 0"]),
+        (
+            &["params", "apply", "MAS-2"],
+            &[
+                "no such preset",
+                "of this kind are mas-2-catch, mas-2-reflex",
+            ],
+        ),
         (
             &["params", "apply", &forgotten],
             &["forgotten.toml", "needs `version = 1`"],
@@ -453,6 +461,8 @@ fn a_part_of_a_name_leads_to_the_presets_that_have_it() {
         error.contains("updrs-1-lead-pipe, updrs-2-lead-pipe"),
         "{error}"
     );
+    let error = stderr(&run(&["presets", "MAS-2"]));
+    assert!(error.contains("mas-2-catch, mas-2-reflex"), "{error}");
     let error = stderr(&run(&["presets", "nothing-like-it"]));
     assert!(!error.contains("of this kind"), "{error}");
 }

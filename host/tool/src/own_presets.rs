@@ -75,9 +75,10 @@ pub(crate) fn find(name: &str) -> Option<PathBuf> {
 /// That a name is that of a grade without its disorder, which is no preset, if it is:
 /// `mas-0`, `updrs-0-cogwheel`.
 pub(crate) fn grade_0(name: &str) -> Option<String> {
+    let small = name.to_lowercase();
     let (grade, disorder) = Disorder::ALL.iter().find_map(|disorder| {
         let grade = disorder.grade_0()?;
-        let rest = name.strip_prefix(&grade.to_lowercase().replace(' ', "-"))?;
+        let rest = small.strip_prefix(&grade.to_lowercase().replace(' ', "-"))?;
         (rest.is_empty() || rest.starts_with('-')).then_some((grade, disorder))
     })?;
     Some(format!(
@@ -85,6 +86,19 @@ pub(crate) fn grade_0(name: &str) -> Option<String> {
          `crepitus params set spasticity.render=off`",
         disorder.name()
     ))
+}
+
+/// Names the presets that ship whose names contain this one, in small or capital letters,
+/// as the end of a sentence; empty without any.
+pub(crate) fn of_this_kind(name: &str) -> String {
+    let small = name.to_lowercase();
+    let names = preset::shipped().iter().map(|preset| preset.name.as_str());
+    let alike: Vec<&str> = names.filter(|other| other.contains(&small)).collect();
+    if small.is_empty() || alike.is_empty() {
+        String::new()
+    } else {
+        format!("; of this kind are {}", alike.join(", "))
+    }
 }
 
 /// The files of all, in the order of their names.
@@ -181,5 +195,22 @@ mod tests {
         ] {
             assert!(check_name(bad).is_err(), "{bad:?}");
         }
+    }
+
+    #[test]
+    fn a_part_of_a_name_in_any_letters_leads_to_those_that_have_it() {
+        for part in ["mas-2", "MAS-2", "Mas-2"] {
+            assert_eq!(
+                of_this_kind(part),
+                "; of this kind are mas-2-catch, mas-2-reflex"
+            );
+        }
+        for part in ["", "nothing-like-it"] {
+            assert_eq!(of_this_kind(part), "");
+        }
+        for grade in ["mas-0", "MAS-0", "UPDRS-0", "updrs-0-cogwheel"] {
+            assert!(grade_0(grade).is_some(), "{grade}");
+        }
+        assert_eq!(grade_0("mas-01"), None);
     }
 }

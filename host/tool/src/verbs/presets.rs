@@ -64,13 +64,7 @@ fn find(name: &str) -> Result<(Preset, Option<PathBuf>), Failure> {
 
 /// That there is no such preset, with those whose names contain it.
 fn unknown(name: &str) -> String {
-    let names = preset::shipped().iter().map(|preset| preset.name.as_str());
-    let alike: Vec<&str> = names.filter(|other| other.contains(name)).collect();
-    let alike = if alike.is_empty() {
-        String::new()
-    } else {
-        format!("; of this kind are {}", alike.join(", "))
-    };
+    let alike = own_presets::of_this_kind(name);
     format!("no preset {name:?} ships or is your own{alike}: `crepitus presets` lists them")
 }
 

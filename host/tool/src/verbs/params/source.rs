@@ -39,9 +39,10 @@ impl Source {
             return Err(Failure::Input(text));
         }
         if !is_summary && shipped.is_none() {
+            let alike = name.map(own_presets::of_this_kind).unwrap_or_default();
             return Err(Failure::Input(format!(
-                "{}: there is no such file, no such preset and no such scene: `crepitus presets` and `crepitus scenes` \
-                 list those that ship",
+                "{}: there is no such file, no such preset and no such scene{alike}: `crepitus presets` and \
+                 `crepitus scenes` list those that ship",
                 what.display()
             )));
         }
