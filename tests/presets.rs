@@ -438,6 +438,26 @@ fn the_folder_is_the_users_configuration() {
 }
 
 #[test]
+fn a_file_in_place_of_the_folder_is_named_and_hides_nothing_that_ships() {
+    let knee = Knee::new();
+    fs::write(knee.presets(), "").unwrap();
+    for force in [&[][..], &["--force"]] {
+        let save = [&["params", "save-preset", "monday"], force].concat();
+        knee.refused(&save, &["presets is no folder", "CREPITUS_PRESETS"]);
+    }
+    let output = knee.run(&["presets", "--json"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("warning: ")
+            && stderr(&output).contains("presets: cannot be read"),
+        "{}",
+        stderr(&output)
+    );
+    let list: Vec<Value> = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(list.len(), shipped().len());
+}
+
+#[test]
 fn a_folder_of_its_name_does_not_hide_a_scene_that_ships() {
     let knee = Knee::new();
     let folder = knee.served.home.path();

@@ -4,8 +4,9 @@ use crate::failure::{Failure, warn};
 use crepitus_scene::preset::{self, Disorder, Preset};
 use std::env;
 use std::fs;
-use std::io::{ErrorKind, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use tempfile::PersistError;
 
 /// Names another folder.
 pub(crate) const FOLDER_VARIABLE: &str = "CREPITUS_PRESETS";
@@ -137,28 +138,45 @@ pub(crate) fn write(name: &str, preset: &Preset, force: bool) -> Result<PathBuf,
     let text = preset.to_toml();
     // What is written can be read.
     Preset::parse(&target, &text).map_err(Failure::input)?;
+    make(&folder)?;
     let put = || {
-        fs::create_dir_all(&folder)?;
         let mut part = crepitus_recording::new_file(&target)?;
         part.write_all(text.as_bytes())?;
         part.as_file().sync_all()?;
-        if force {
-            part.persist(&target)
-        } else {
-            part.persist_noclobber(&target)
-        }
-        .map_err(|error| error.error)
+        io::Result::Ok(part)
     };
-    match put() {
+    let cannot = |error| Failure::at(&target, "cannot be written", &error);
+    let part = put().map_err(cannot)?;
+    let put = if force {
+        part.persist(&target)
+    } else {
+        part.persist_noclobber(&target)
+    };
+    match put {
         Ok(_) => Ok(target),
-        Err(error) if error.kind() == ErrorKind::AlreadyExists && !force => {
+        Err(PersistError { error, .. }) if error.kind() == ErrorKind::AlreadyExists && !force => {
             Err(Failure::Input(format!(
                 "{} exists: choose another name, or replace it with --force",
                 target.display()
             )))
         }
-        Err(error) => Err(Failure::at(&target, "cannot be written", &error)),
+        Err(PersistError { error, .. }) => Err(cannot(error)),
     }
+}
+
+/// Creates the folder of presets where there is none.
+fn make(folder: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(folder).map_err(|error| {
+        // The system's words for a file in its place are "file exists".
+        if folder.exists() {
+            Failure::Input(format!(
+                "{} is no folder to keep presets in: move it away, or set {FOLDER_VARIABLE} to a folder",
+                folder.display()
+            ))
+        } else {
+            Failure::at(folder, "cannot be created", &error)
+        }
+    })
 }
 
 fn file(folder: &Path, name: &str) -> PathBuf {
@@ -212,5 +230,18 @@ mod tests {
             assert!(grade_0(grade).is_some(), "{grade}");
         }
         assert_eq!(grade_0("mas-01"), None);
+    }
+
+    #[test]
+    fn a_folder_is_made_but_a_file_in_its_place_is_named() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path().join("a/b");
+        assert!(make(&folder).is_ok() && make(&folder).is_ok() && folder.is_dir());
+        let file = folder.join("c");
+        fs::write(&file, "").unwrap();
+        let text = |folder: &Path| make(folder).unwrap_err().into_text();
+        assert!(text(&file).contains("is no folder"), "{}", text(&file));
+        let below = text(&file.join("d"));
+        assert!(below.contains("cannot be created"), "{below}");
     }
 }

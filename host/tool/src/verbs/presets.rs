@@ -34,7 +34,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         };
     }
     let mut own = Vec::new();
-    for file in own_presets::files()? {
+    // Without the folder, those that ship are still of use.
+    let files = own_presets::files().unwrap_or_else(|failure| {
+        warn(failure.into_text());
+        Vec::new()
+    });
+    for file in files {
         match Preset::read(&file) {
             Ok(preset) => own.push((preset, file)),
             // The others are still of use.
