@@ -458,6 +458,25 @@ fn a_file_in_place_of_the_folder_is_named_and_hides_nothing_that_ships() {
 }
 
 #[test]
+fn a_scene_does_not_name_an_own_preset_and_the_list_says_so() {
+    let knee = Knee::new();
+    knee.done(&["params", "apply", "scats-1-clonus"]);
+    knee.done(&["params", "save-preset", "mine"]);
+    let list = knee.done(&["presets"]);
+    assert!(
+        list.contains("takes the values of those that ship"),
+        "{list}"
+    );
+    knee.refused(
+        &["run", "clonus-hold", "--set", "effects.clonus.preset=mine"],
+        &[
+            "\"mine\" is not allowed",
+            "your own presets cannot be named",
+        ],
+    );
+}
+
+#[test]
 fn a_folder_of_its_name_does_not_hide_a_scene_that_ships() {
     let knee = Knee::new();
     let folder = knee.served.home.path();

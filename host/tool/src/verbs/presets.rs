@@ -97,7 +97,8 @@ fn list(own: &[(Preset, PathBuf)]) -> String {
         text.push('\n');
     }
     text.push_str(
-        "Try one with `crepitus params apply NAME`; in a scene, preset = \"NAME\" below [effects.…].\n\
+        "Try one with `crepitus params apply NAME`; in a scene, preset = \"NAME\" below [effects.…] takes the values \
+         of those that ship.\n\
          `crepitus presets NAME` shows its values.\n",
     );
     text
