@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use support::{refuses, run, stderr, stdout};
+use support::{refuses, repository, run, stderr, stdout};
 
 /// An actuator that is none of the data sheet.
 const OURS: Simulated = Simulated {
@@ -283,4 +283,37 @@ fn a_device_whose_actuator_is_off_or_too_weak_for_the_chirp_says_so() {
         "{}",
         stderr(&alone)
     );
+}
+
+/// The second run found the fault of the first, and awaited a chirp that nobody plays.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_broken_coil_ends_every_run_of_the_same_device() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("broken.toml");
+    let shipped = fs::read_to_string(repository().join("scenes/actuator-in-a-vice.toml")).unwrap();
+    let (broken, _) = shipped.split_once("[effects.reaction-mass]").unwrap();
+    fs::write(&file, broken).unwrap();
+    let served = support::served::Served::with_scene(file.to_str().unwrap());
+    let verb = [
+        "identify-actuator",
+        "--zero",
+        "--moving-mass-g",
+        "52",
+        "--device",
+        "knee",
+    ];
+    for _ in 0..2 {
+        let mut child = (served.command(&verb))
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        // A run without an end fails after a minute.
+        let status = support::served::ended(&mut child);
+        let text = stderr(&child.wait_with_output().unwrap());
+        assert_eq!(status.code(), Some(1), "{text}");
+        assert!(text.contains("of the coil"), "{text}");
+        assert!(text.contains("clear-fault"), "{text}");
+        assert_eq!(served.info()["status"]["state"], "disarmed");
+    }
 }

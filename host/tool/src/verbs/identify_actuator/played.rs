@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::following::{Arming, End, Follower, follow};
 use crate::interrupt;
 use crate::line::{Line, failure, failure_with};
-use crepitus_client::Client;
+use crepitus_client::{Client, coil_fault_text};
 use crepitus_identify::actuator::{Current, Hold, Series};
 use crepitus_model::control::chirp::Chirp;
 use crepitus_protocol::chirp::PlayedChirp;
@@ -19,6 +19,7 @@ use crepitus_protocol::telemetry::{
 };
 use crepitus_protocol::{DeviceSettings, TICK_S, TICKS_PER_S};
 use std::io::{BufRead, stdin};
+use std::time::Duration;
 
 /// Ticks with the coil at rest, before and after the chirp.
 const BEFORE: usize = TICKS_PER_S as usize / 5;
@@ -26,6 +27,9 @@ const AFTER: usize = TICKS_PER_S as usize * 3 / 5;
 
 /// Ticks in which the chirp has to begin after it was accepted.
 const BEGINS_WITHIN: usize = TICKS_PER_S as usize / 5;
+
+/// Time after arming in which the coil has to be driven: without a fault it is at once.
+const DRIVEN_WITHIN: Duration = Duration::from_secs(1);
 
 /// Plays a chirp, and a second one once a mass is added.
 pub(super) fn measured(
@@ -45,8 +49,9 @@ pub(super) fn measured(
     Ok(Measured { bare, with_added })
 }
 
-/// Refuses an actuator that is off, or that plays what the joint commands beside.
+/// Refuses an actuator that is off, has a fault, or plays what the joint commands beside.
 fn is_silent(client: &mut Client<Line>) -> Result<(), Failure> {
+    refuse_coil_fault(client)?;
     let (_, values) = client.parameters().map_err(failure)?;
     let effects = DeviceSettings::of(&values)
         .map_err(|_| Failure::Work("the device's parameters contradict each other".to_owned()))?;
@@ -59,6 +64,15 @@ fn is_silent(client: &mut Client<Line>) -> Result<(), Failure> {
          vibration-actuator.render=on vibration-actuator.gain=0`"
             .to_owned(),
     ))
+}
+
+/// Refuses a coil with a fault: it sleeps until `clear-fault`, and plays nothing.
+fn refuse_coil_fault(client: &mut Client<Line>) -> Result<(), Failure> {
+    let status = client.status().map_err(failure)?;
+    if status.coil_fault == 0 {
+        return Ok(());
+    }
+    Err(Failure::Work(coil_fault_text(status.coil_fault)))
 }
 
 /// Arms, plays one chirp, and disarms.
@@ -93,6 +107,8 @@ fn wait_for_added_mass() -> Result<(), Failure> {
 struct Listening {
     chirp: PlayedChirp,
     is_asked: bool,
+    /// Time of the first pause, which is right after arming.
+    armed_at: Option<Duration>,
     /// Tick that the next block begins with.
     next_tick: Option<u64>,
     /// Samples were lost: no series.
@@ -110,6 +126,7 @@ impl Listening {
         Self {
             chirp,
             is_asked: false,
+            armed_at: None,
             next_tick: None,
             has_gap: false,
             chirped: Vec::new(),
@@ -212,6 +229,16 @@ impl Follower for Listening {
                 self.is_asked = true;
                 self.asked_at = self.chirped.len();
                 eprintln!("playing the chirp; Ctrl-C disarms");
+                return Ok(false);
+            }
+            let armed_at = *self.armed_at.get_or_insert(client.now());
+            if driven == 0 && client.now() > armed_at + DRIVEN_WITHIN {
+                refuse_coil_fault(client)?;
+                return Err(Failure::Work(format!(
+                    "the coil is not driven {} s after arming, so the chirp was not played: check that \
+                     vibration-actuator.render is on, and see `crepitus doctor`",
+                    DRIVEN_WITHIN.as_secs()
+                )));
             }
             return Ok(false);
         }
@@ -220,5 +247,73 @@ impl Follower for Listening {
             None => now > self.asked_at + BEGINS_WITHIN,
             Some(last) => now > last + AFTER,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_client::Transport;
+    use crepitus_connection::Simulated;
+    use crepitus_model::control::chirp::ChirpSettings;
+    use crepitus_protocol::State;
+    use crepitus_scene::Overrides;
+    use crepitus_scene::shipped::{self, Source};
+    use std::path::Path;
+
+    const CHIRP: PlayedChirp = PlayedChirp {
+        amplitude_mv: 400,
+        from_dhz: 80,
+        to_dhz: 5000,
+        duration_ms: 10_000,
+    };
+
+    fn client(scene: &Path) -> Client<Line> {
+        let scene = shipped::scene(scene, &Overrides::default()).expect("a scene");
+        let device = Simulated::of(&scene).expect("a device");
+        Client::connect(Line::Simulated(Box::new(device))).expect("a connection")
+    }
+
+    /// Plays the chirp without the checks before it; the error, and how long it took.
+    fn failed(client: &mut Client<Line>) -> (String, Duration) {
+        let begun = client.now();
+        let error = play(client, CHIRP, true).expect_err("nothing to play on");
+        assert!(!client.is_armed());
+        client.transport_mut().wait(Duration::from_millis(20));
+        let status = client.status().expect("the status");
+        assert_eq!(status.state, State::Disarmed);
+        (error.into_text(), client.now().saturating_sub(begun))
+    }
+
+    #[test]
+    fn the_chirp_of_these_tests_is_the_usual_one() {
+        assert_eq!(CHIRP.settings(), ChirpSettings::default());
+    }
+
+    /// A faulted coil sleeps: the chirp was awaited for ever, armed.
+    #[test]
+    fn a_coil_with_a_fault_ends_the_wait() {
+        let shipped = Source::find(Path::new("actuator-in-a-vice")).expect("a scene");
+        let (broken, _) = (shipped.text)
+            .split_once("[effects.reaction-mass]")
+            .expect("a coil");
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("broken.toml");
+        std::fs::write(&file, broken).expect("a file");
+        let mut client = client(&file);
+        for _ in 0..2 {
+            let (text, took) = failed(&mut client);
+            assert!(text.contains("of the coil"), "{text}");
+            assert!(took < Duration::from_secs(3), "{took:?}");
+        }
+        let before = is_silent(&mut client).expect_err("a fault").into_text();
+        assert!(before.contains("clear-fault"), "{before}");
+    }
+
+    #[test]
+    fn a_coil_that_is_not_driven_ends_the_wait() {
+        let (text, took) = failed(&mut client(Path::new("passive-examination")));
+        assert!(text.contains("not driven"), "{text}");
+        assert!(took < Duration::from_secs(3), "{took:?}");
     }
 }
