@@ -455,3 +455,17 @@ fn a_shell_needs_a_limb() {
 fn as_many_draws_as_nobody_waits_for_are_refused() {
     support::refuses(&["vibration", "--draws", "99999999999"], 2, "0..=1000000");
 }
+
+/// The speeds of the study replaced what was set, silently.
+#[test]
+fn a_study_of_vibration_takes_speeds_from_one_place() {
+    for set in [
+        "motion.velocity_rad_s=0.3",
+        "motion.from_deg=40",
+        "duration_s=1",
+    ] {
+        support::refuses(&["vibration", "--set", set], 2, "use --speeds");
+    }
+    let strokes = ["vibration", "passive-examination", "--speeds", "0.5"];
+    support::refuses(&strokes, 2, "leave --speeds out");
+}

@@ -38,9 +38,9 @@ pub(crate) struct Arguments {
     #[arg(default_value = "fig8-6-actuator")]
     scene: PathBuf,
 
-    /// Speeds of the motion, rad/s; of a scene whose motion is constant.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_values_t = [0.1, 0.5, 1.0])]
-    speeds: Vec<f64>,
+    /// Speeds of the motion, rad/s; of a scene whose motion is constant [default: 0.1,0.5,1].
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    speeds: Option<Vec<f64>>,
 
     /// How often everything is off at once.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(..=MOST_DRAWS))]
@@ -60,6 +60,12 @@ pub(crate) struct Arguments {
 
 /// The most draws: a study of days.
 const MOST_DRAWS: i64 = 1_000_000;
+
+/// Speeds without `--speeds`, rad/s.
+const SPEEDS: [f64; 3] = [0.1, 0.5, 1.0];
+
+/// Keys of a constant motion that a run at a speed sets.
+const OF_SPEED: [&str; 3] = ["motion.velocity_rad_s", "motion.from_deg", "duration_s"];
 
 /// The way of the joint in a run, rad, and the longest that one takes, s.
 const WAY_RAD: f64 = 1.4;
@@ -101,7 +107,20 @@ fn scenes(arguments: &Arguments) -> Result<Vec<Scene>, Failure> {
     };
     let as_it_is = read(&[])?;
     if as_it_is.motion_kind != MotionKind::Constant {
+        if arguments.speeds.is_some() {
+            return Err(Failure::Input(format!(
+                "--speeds: the motion of {} is not constant and has its own speed; leave --speeds out",
+                arguments.scene.display()
+            )));
+        }
         return Ok(vec![as_it_is]);
+    }
+    if let Some((key, _)) = (arguments.set.iter()).find(|(key, _)| OF_SPEED.contains(&key.as_str()))
+    {
+        return Err(Failure::Input(format!(
+            "--set {key}: a constant motion is run at each speed of --speeds, from 20° over {WAY_RAD} rad, for \
+             {LONGEST_S} s at most; use --speeds"
+        )));
     }
     let at = |speed: &f64| {
         if !(speed.is_finite() && *speed > 0.0) {
@@ -110,13 +129,20 @@ fn scenes(arguments: &Arguments) -> Result<Vec<Scene>, Failure> {
             )));
         }
         let duration_s = (WAY_RAD / speed).min(LONGEST_S);
-        read(&[
-            ("motion.velocity_rad_s".to_owned(), format!("{speed:?}")),
-            ("motion.from_deg".to_owned(), "20.0".to_owned()),
-            ("duration_s".to_owned(), format!("{duration_s:?}")),
-        ])
+        let values = [
+            format!("{speed:?}"),
+            "20.0".to_owned(),
+            format!("{duration_s:?}"),
+        ];
+        let set: Vec<_> = OF_SPEED
+            .map(str::to_owned)
+            .into_iter()
+            .zip(values)
+            .collect();
+        read(&set)
     };
-    arguments.speeds.iter().map(at).collect()
+    let speeds = arguments.speeds.as_deref().unwrap_or(&SPEEDS);
+    speeds.iter().map(at).collect()
 }
 
 /// `out/<scene>-vibration`.
