@@ -1,5 +1,6 @@
 //! Voltage and current of a coil over time, evenly sampled.
 
+use std::fmt::Write;
 use std::io;
 
 /// Highest sampling rate that is kept, Hz; faster recordings are averaged down.
@@ -11,6 +12,9 @@ const SHORTEST_S: f64 = 0.5;
 
 /// Tolerated jitter of a sampling time, as a share of the sampling interval.
 const UNEVEN: f64 = 0.25;
+
+/// Column of the time for which a voltage is held, s.
+const HOLD: &str = "hold_s";
 
 /// Voltage and current of a coil, sample by sample.
 ///
@@ -95,6 +99,17 @@ pub enum SeriesError {
     /// Voltage and current are of different length, or not finite.
     #[error("expected as many voltages as currents, all finite")]
     Unequal,
+    /// The voltage is held for longer than a row, or for no time.
+    #[error(
+        "hold_s = {hold_s}: expected the time for which a voltage is held, above 0 and at most that between two \
+         rows, {step_s:.7} s; or leave the column out"
+    )]
+    Hold {
+        /// The value, s.
+        hold_s: f64,
+        /// Sampling interval, s.
+        step_s: f64,
+    },
     /// Too slow, or no time at all between samples.
     #[error("one sample every {step_s} s: expected at least {SLOWEST_PER_S} per second")]
     Slow {
@@ -154,7 +169,24 @@ impl Series {
         self.hold
     }
 
-    /// Reads the columns `t_s`, `volts` and `amperes` of a CSV file.
+    /// Writes what [`Series::from_csv`] reads, with the hold.
+    pub fn to_csv(&self) -> String {
+        // Without its hold the same recording has another inductance and delay.
+        let (name, value) = self.hold.map_or_else(Default::default, |hold| {
+            (format!(",{HOLD}"), format!(",{}", hold.tick_s))
+        });
+        let mut text = format!("t_s,volts,amperes{name}\n");
+        for (i, (volts, amperes)) in self.volts.iter().zip(&self.amperes).enumerate() {
+            let time_s = i as f64 * self.step_s;
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{time_s:.6},{volts:.7},{amperes:.6}{value}");
+        }
+        text
+    }
+
+    /// Reads the columns `t_s`, `volts` and `amperes` of a CSV file, and `hold_s` if it is there:
+    /// the time of a tick whose voltage is held, with `amperes` the mean of the values at the
+    /// ticks.
     ///
     /// # Errors
     /// [`SeriesError`] with the line.
@@ -169,29 +201,44 @@ impl Series {
             *place = (headers.iter().position(|header| header == name))
                 .ok_or(SeriesError::Column { name })?;
         }
+        let place_of_hold = headers.iter().position(|header| header == HOLD);
+        let mut hold_s = None;
         let mut columns: [Vec<f64>; 3] = Default::default();
         let mut lines = Vec::new();
         for record in reader.records() {
             let record = record?;
             let line = record.position().map_or(0, csv::Position::line);
-            for ((values, place), column) in columns.iter_mut().zip(places).zip(NAMES) {
+            let number = |place: usize, column| {
                 let text = record.get(place).unwrap_or_default();
                 match text.parse::<f64>() {
-                    Ok(value) if value.is_finite() => values.push(value),
-                    _ => {
-                        return Err(SeriesError::Number {
-                            line,
-                            column,
-                            text: text.to_owned(),
-                        });
-                    }
+                    Ok(value) if value.is_finite() => Ok(value),
+                    _ => Err(SeriesError::Number {
+                        line,
+                        column,
+                        text: text.to_owned(),
+                    }),
                 }
+            };
+            for ((values, place), column) in columns.iter_mut().zip(places).zip(NAMES) {
+                values.push(number(place, column)?);
+            }
+            // It is the same in every row.
+            if let (None, Some(place)) = (hold_s, place_of_hold) {
+                hold_s = Some(number(place, HOLD)?);
             }
             lines.push(line);
         }
         let [times_s, volts, amperes] = columns;
         let step_s = even(&times_s, &lines)?;
-        Self::new(step_s, &volts, &amperes)
+        let series = Self::new(step_s, &volts, &amperes)?;
+        match hold_s {
+            None => Ok(series),
+            Some(tick_s) if tick_s > 0.0 && tick_s <= step_s => Ok(series.held(Hold {
+                tick_s,
+                current: Current::Ticks,
+            })),
+            Some(hold_s) => Err(SeriesError::Hold { hold_s, step_s }),
+        }
     }
 
     /// Sampling interval, s.
@@ -245,7 +292,6 @@ fn means(values: &[f64], together: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::fmt::Write;
 
     fn csv_of(rows: usize, time_s: impl Fn(usize) -> f64) -> String {
         let mut text = "amperes,t_s , volts\n".to_owned();
@@ -280,6 +326,30 @@ mod tests {
         assert!((hold(Current::Ticks).factor(omega) - of_hold).abs() < 1e-15);
         assert!((hold(Current::Mean).factor(omega) - of_hold * of_hold).abs() < 1e-15);
         assert_eq!(hold(Current::Mean).factor(0.0), 1.0);
+    }
+
+    #[test]
+    fn a_written_recording_is_read_with_its_hold() {
+        let volts: Vec<f64> = (0..4000).map(|i| 0.125 * f64::from(i)).collect();
+        let series = Series::new(250e-6, &volts, &vec![0.125; 4000]).unwrap();
+        let of_bench = Series::from_csv(series.to_csv().as_bytes()).unwrap();
+        assert_eq!(of_bench.hold(), None);
+        let held = series.held(Hold {
+            tick_s: 5e-5,
+            current: Current::Ticks,
+        });
+        let text = held.to_csv();
+        let read = Series::from_csv(text.as_bytes()).unwrap();
+        assert_eq!(read.hold(), held.hold());
+        assert_eq!(read.volts(), held.volts());
+        assert_eq!(read.amperes(), held.amperes());
+        assert!((read.step_s() - held.step_s()).abs() < 1e-9);
+        // Longer than a row; no time at all.
+        for hold_s in ["0.5", "0"] {
+            let wrong = text.replace(",0.00005\n", &format!(",{hold_s}\n"));
+            let error = Series::from_csv(wrong.as_bytes()).unwrap_err();
+            assert!(error.to_string().contains("hold_s"), "{error}");
+        }
     }
 
     #[test]

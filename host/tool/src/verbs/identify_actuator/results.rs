@@ -3,10 +3,9 @@
 use super::recorded::Measured;
 use crate::failure::Failure;
 use crate::results::{Files, summary_file, svg_files, write as write_files};
-use crepitus_identify::actuator::{Actuator, Series, chart};
+use crepitus_identify::actuator::{Actuator, chart};
 use crepitus_scene::output::Folder;
 use serde_json::Value;
-use std::fmt::Write;
 use std::path::Path;
 
 /// The plot of impedance and residual.
@@ -26,21 +25,10 @@ pub(super) fn write(
         files.extend(svg_files([&chart::figure(actuator)]));
     }
     if let Some(measured) = measured {
-        files.push(("measured.csv".to_owned(), csv(&measured.bare).into()));
+        files.push(("measured.csv".to_owned(), measured.bare.to_csv().into()));
         if let Some(with_added) = &measured.with_added {
-            files.push(("measured-added.csv".to_owned(), csv(with_added).into()));
+            files.push(("measured-added.csv".to_owned(), with_added.to_csv().into()));
         }
     }
     write_files(folder, out, files)
-}
-
-/// As `--from` reads it.
-fn csv(series: &Series) -> String {
-    let mut text = "t_s,volts,amperes\n".to_owned();
-    for (i, (volts, amperes)) in (0_u32..).zip(series.volts().iter().zip(series.amperes())) {
-        let time_s = f64::from(i) * series.step_s();
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{time_s:.6},{volts:.7},{amperes:.6}");
-    }
-    text
 }
