@@ -33,6 +33,8 @@ mod second;
 mod series;
 mod spectrum;
 mod start;
+#[cfg(test)]
+mod synthetic;
 
 pub use mass::Weighed;
 pub use parameters::{Actuator, MassEvidence, identify};

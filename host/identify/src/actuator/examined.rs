@@ -4,7 +4,7 @@ use crate::actuator::bands::{Mean, bands};
 use crate::actuator::derived::derived;
 use crate::actuator::fit::{Explained, Fit, Residual};
 use crate::actuator::refusal::Refusal;
-use crate::actuator::spectrum::{Line, Spectrum};
+use crate::actuator::spectrum::{LEAST_RATE, Line, Spectrum};
 use crate::actuator::{Band, Series};
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
@@ -52,6 +52,9 @@ const SECOND_DEVIATIONS: f64 = 10.0;
 const SECOND_HEIGHT: f64 = 0.02;
 const SECOND_SHARE: f64 = 0.35;
 
+/// Share of the misfit in two lines from which it is a hum.
+const HUM_SHARE: f64 = 0.5;
+
 /// A ring that is held softly hardly has a hump of its own, and yet moves the values:
 /// below the first resonance, a second one counts from this height over its standard deviation
 /// and this change of a value. Of the 300 chirps of hidden actuators in a vice none comes there.
@@ -81,6 +84,7 @@ pub(crate) struct Examined {
 impl Examined {
     /// Fits a chirp and checks the fit. `mass_kg` only serves the text of a refusal.
     pub(crate) fn of(series: &Series, band: Band, mass_kg: Option<f64>) -> Result<Self, Refusal> {
+        has_a_noise_band(series, band)?;
         let amplitude_v = at_rest_at_both_ends(series)?;
         let spectrum = Spectrum::of(series, band);
         let means: Vec<Mean> = bands(&spectrum.lines).map(Mean::of).collect();
@@ -126,7 +130,7 @@ impl Examined {
         let is_systematic =
             residual.systematic > most(UNEXPLAINED_THERE) && residual.deviations > MISFIT;
         let is_noisy = residual.beyond_noise > most(UNEXPLAINED)
-            && residual.over_noise.is_none_or(|ratio| ratio > OVER_NOISE);
+            && residual.over_noise.is_some_and(|ratio| ratio > OVER_NOISE);
         let is_double = residual.second.is_some_and(|second| {
             second.deviations > SECOND_DEVIATIONS && second.height > SECOND_HEIGHT
         });
@@ -150,6 +154,9 @@ impl Examined {
 
     fn misfit(&self, residual: &Residual, mass_kg: Option<f64>) -> Refusal {
         let is_above = |hz: f64| TAU * hz > FROM_END * self.fit.impedance.resonance;
+        if let Some(hum) = self.hum() {
+            return hum;
+        }
         let second = residual.second.filter(|second| {
             second.share > SECOND_SHARE && !(second.is_broad && is_above(second.hz))
         });
@@ -173,6 +180,15 @@ impl Examined {
                 format!(" (a linear one would swing by ±{mm:.2} mm)")
             }),
         }
+    }
+
+    /// Returns the hum that is most of the misfit; stops and friction spread over the band.
+    fn hum(&self) -> Option<Refusal> {
+        let hum = (self.fit.residual.hum).filter(|hum| hum.share > HUM_SHARE)?;
+        Some(Refusal::Hum {
+            hz: hum.hz,
+            share: 100.0 * hum.share,
+        })
     }
 
     fn is_inside(&self, band: Band) -> Result<(), Refusal> {
@@ -207,6 +223,21 @@ impl Examined {
             None => Ok(()),
         }
     }
+}
+
+/// Rejects a recording without frequencies above the band: its noise would be unknown.
+fn has_a_noise_band(series: &Series, band: Band) -> Result<(), Refusal> {
+    let rows_per_s = 1.0 / series.step_s();
+    let needed_per_s = LEAST_RATE * band.to_hz;
+    if rows_per_s < needed_per_s {
+        return Err(Refusal::FewRows {
+            rows_per_s,
+            to_hz: band.to_hz,
+            needed_per_s,
+            end_hz: rows_per_s / LEAST_RATE,
+        });
+    }
+    Ok(())
 }
 
 /// Rejects a recording that does not begin and end at rest; returns the peak voltage, V.
@@ -308,4 +339,78 @@ fn spoiled(series: &Series) -> Option<Refusal> {
         amperes: level,
         share: 100.0 * share,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actuator::synthetic::{Added, NOISE, NOMINAL, band, played};
+
+    fn resonance_hz(examined: &Examined) -> f64 {
+        examined.fit.impedance.resonance / TAU
+    }
+
+    /// Their noise was called stops, friction or a dead time.
+    #[test]
+    fn slow_recordings_are_fitted_or_told_to_be_slow() {
+        // 1000 and 500 rows a second.
+        for (ticks, to_hz) in [(20, 300.0), (40, 180.0), (20, 400.0)] {
+            let series = played(&NOMINAL, to_hz, ticks, NOISE);
+            let found = Examined::of(&series, band(to_hz), None).unwrap();
+            let hz = resonance_hz(&found);
+            assert!((hz / 35.0 - 1.0).abs() < 0.01, "{ticks}, {to_hz}: {hz}");
+        }
+        for (ticks, to_hz) in [(20, 500.0), (40, 500.0), (40, 250.0)] {
+            let series = played(&NOMINAL, to_hz, ticks, NOISE);
+            let refusal = Examined::of(&series, band(to_hz), None).unwrap_err();
+            assert!(matches!(refusal, Refusal::FewRows { .. }), "{refusal}");
+            assert!(refusal.to_string().contains("sample faster"), "{refusal}");
+        }
+    }
+
+    #[test]
+    fn unknown_noise_is_no_misfit() {
+        let noisy = Added {
+            noise_a: 0.03,
+            ..NOISE
+        };
+        let series = played(&NOMINAL, 200.0, 40, noisy);
+        // It leaves ten lines above it.
+        let band = Band {
+            from_hz: 9.0,
+            to_hz: 178.0,
+        };
+        let found = Examined::of(&series, band, None).unwrap();
+        assert_eq!(found.fit.residual.over_noise, None);
+        assert_eq!(found.fit.residual.beyond_noise, 0.0);
+        assert!((resonance_hz(&found) / 35.0 - 1.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn mains_hum_is_named_by_its_frequency() {
+        // 60.03 Hz lie between two lines.
+        for hz in [50.0, 60.03, 100.0] {
+            for amperes in [0.005, 0.01] {
+                let hum = Added {
+                    hum: (amperes, hz),
+                    ..NOISE
+                };
+                let series = played(&NOMINAL, 500.0, 5, hum);
+                let refusal = Examined::of(&series, band(500.0), None).unwrap_err();
+                let Refusal::Hum { hz: found_hz, .. } = refusal else {
+                    panic!("{hz} Hz, {amperes} A: {refusal}");
+                };
+                assert!((found_hz - hz).abs() < 0.1, "{found_hz} {hz}");
+                assert!(refusal.to_string().contains("mains hum"), "{refusal}");
+            }
+        }
+        // What depends on the current is not.
+        let dead = Added {
+            lost_a: 0.02,
+            ..NOISE
+        };
+        let series = played(&NOMINAL, 500.0, 5, dead);
+        let refusal = Examined::of(&series, band(500.0), None).unwrap_err();
+        assert!(matches!(refusal, Refusal::Nonlinear { .. }), "{refusal}");
+    }
 }

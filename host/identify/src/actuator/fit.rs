@@ -58,10 +58,22 @@ pub(crate) struct Residual {
     pub(crate) deviations: f64,
     /// Frequency of [`systematic`](Self::systematic), Hz.
     pub(crate) systematic_hz: f64,
+    /// Strongest steady frequency.
+    pub(crate) hum: Option<Hum>,
     /// Second resonance that would explain most of the residual.
     pub(crate) second: Option<Explained>,
     /// RMS noise of a current sample, A, from the residual.
     pub(crate) noise_a: f64,
+}
+
+/// A frequency of the current that the voltage does not have: two neighbouring lines, as it lies
+/// between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Hum {
+    /// Frequency of the stronger line, Hz.
+    pub(crate) hz: f64,
+    /// Share of the power beyond the noise.
+    pub(crate) share: f64,
 }
 
 /// A second resonance, as far as the residual shows it.
@@ -191,10 +203,10 @@ impl Residual {
     fn of(spectrum: &Spectrum, impedance: &Impedance, normal: &Square, variance: f64) -> Self {
         let lines = &spectrum.lines;
         let of_current: f64 = lines.iter().map(|line| line.amperes.norm_sqr()).sum();
-        let noise = spectrum.noise_square.unwrap_or(0.0);
-        let beyond = (2.0 * variance - noise).max(0.0) * lines.len() as f64;
         // Where the noise is unknown, a residual may be noise.
-        let most_noise = (1.0 + NOISE_UNSURE) * spectrum.noise_square.unwrap_or(2.0 * variance);
+        let noise = spectrum.noise_square.unwrap_or(2.0 * variance);
+        let beyond = (2.0 * variance - noise).max(0.0) * lines.len() as f64;
+        let most_noise = (1.0 + NOISE_UNSURE) * noise;
         let surely_beyond = (2.0 * variance - most_noise) * lines.len() as f64;
         let worst = bands(lines)
             .map(|band| common(band, impedance))
@@ -210,6 +222,10 @@ impl Residual {
                 c.admittance.norm() / (2.0 * variance * c.variance).sqrt()
             }),
             systematic_hz: worst.map_or(0.0, |c| c.omega / std::f64::consts::TAU),
+            hum: hum(lines, impedance, noise).map(|(hz, power)| Hum {
+                hz,
+                share: power / beyond.max(power),
+            }),
             second: second(lines, impedance, normal).map(|second| Explained {
                 hz: second.hz,
                 height: second.height,
@@ -222,6 +238,29 @@ impl Residual {
             noise_a: (2.0 * variance / samples).sqrt(),
         }
     }
+}
+
+/// Least power of a steady frequency over the noise of a line: noise alone reaches ten.
+const HUM_OVER_NOISE: f64 = 30.0;
+
+/// Returns the strongest two neighbouring lines of the residual, if they are more than noise:
+/// frequency, Hz, and power beyond the noise.
+fn hum(lines: &[Line], impedance: &Impedance, noise: f64) -> Option<(f64, f64)> {
+    let power = |line: &Line| {
+        (line.amperes - impedance.admittance(line.omega).0 * line.volts).norm_sqr() - noise
+    };
+    let powers: Vec<(f64, f64)> = lines.iter().map(|l| (l.omega, power(l))).collect();
+    (powers.windows(2))
+        .map(|pair| {
+            let stronger = if pair[0].1 > pair[1].1 {
+                pair[0]
+            } else {
+                pair[1]
+            };
+            (stronger.0 / std::f64::consts::TAU, pair[0].1 + pair[1].1)
+        })
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .filter(|(_, power)| *power > HUM_OVER_NOISE * noise)
 }
 
 /// Returns the factor for the covariance where residuals of neighbouring lines are correlated: mean

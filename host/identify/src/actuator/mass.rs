@@ -62,14 +62,20 @@ pub(crate) fn by_added_mass(fit: &Fit, with: &Fit, added: Weighed) -> Result<Spl
     let by_resonance = |z: &Impedance, with: &Impedance| 2.0 * (z.resonance / with.resonance).ln();
     let by_coupling = |z: &Impedance, with: &Impedance| (z.coupling / with.coupling).ln();
     let (resonance, coupling) = (by_resonance(&z, &z_with), by_coupling(&z, &z_with));
+    let of_resonance =
+        variance(fit, |z| by_resonance(z, &z_with)) + variance(with, |with| by_resonance(&z, with));
+    if resonance < -DEVIATIONS * of_resonance.sqrt() {
+        return Err(Refusal::Swapped {
+            without_hz: z.resonance / TAU,
+            with_hz: z_with.resonance / TAU,
+        });
+    }
     if resonance.exp() - 1.0 < LEAST_CHANGE {
         return Err(Refusal::AddedMassSmall {
             without_hz: z.resonance / TAU,
             with_hz: z_with.resonance / TAU,
         });
     }
-    let of_resonance =
-        variance(fit, |z| by_resonance(z, &z_with)) + variance(with, |with| by_resonance(&z, with));
     let of_coupling =
         variance(fit, |z| by_coupling(z, &z_with)) + variance(with, |with| by_coupling(&z, with));
     let most = DEVIATIONS * (of_resonance + of_coupling).sqrt();
@@ -130,4 +136,37 @@ fn is_as_cold(fit: &Fit, with: &Fit) -> Result<(), Refusal> {
         });
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actuator::examined::Examined;
+    use crate::actuator::synthetic::{NOISE, NOMINAL, band, played};
+
+    #[test]
+    fn swapped_recordings_are_told_so() {
+        let fitted = |ratio: f64| {
+            let z = Impedance {
+                coupling: NOMINAL.coupling / ratio,
+                damping: NOMINAL.damping / ratio,
+                resonance: NOMINAL.resonance / ratio.sqrt(),
+                ..NOMINAL
+            };
+            let series = played(&z, 500.0, 5, NOISE);
+            Examined::of(&series, band(500.0), None).unwrap().fit
+        };
+        let added = Weighed {
+            mass_kg: 0.03,
+            share: 0.01,
+        };
+        let (bare, with) = (fitted(1.0), fitted(1.5));
+        let found = by_added_mass(&bare, &with, added).unwrap();
+        assert!((found.mass_kg.value / 0.06 - 1.0).abs() < 0.02);
+        let swapped = by_added_mass(&with, &bare, added).unwrap_err();
+        assert!(swapped.to_string().contains("swapped"), "{swapped}");
+        // The same twice is too small a mass.
+        let same = by_added_mass(&bare, &bare, added).unwrap_err();
+        assert!(matches!(same, Refusal::AddedMassSmall { .. }), "{same}");
+    }
 }

@@ -23,6 +23,21 @@ pub enum Refusal {
         /// Its root mean square, V.
         volts: f64,
     },
+    /// Too few samples to tell noise from misfit.
+    #[error(
+        "{rows_per_s:.0} rows per second are too few for a band up to {to_hz:.0} Hz: sample faster, at \
+         {needed_per_s:.0} rows per second or more, or end the chirp lower with --to-hz, at {end_hz:.0} Hz or below"
+    )]
+    FewRows {
+        /// Sampling rate, Hz.
+        rows_per_s: f64,
+        /// End of the band, Hz.
+        to_hz: f64,
+        /// Least sampling rate for it, Hz.
+        needed_per_s: f64,
+        /// Largest end of the band for the sampling rate, Hz.
+        end_hz: f64,
+    },
     /// The recording does not begin and end at rest.
     #[error(
         "the recording {place} while the chirp plays ({volts:.3} V rms): record from before its start \
@@ -58,7 +73,7 @@ pub enum Refusal {
     /// Nothing moves.
     #[error(
         "no resonance between {from_hz:.0} and {to_hz:.0} Hz: the current shows resistance and inductance only; \
-         the mass is stuck, its resonance lies outside the band, or the amplitude is too low to see it"
+         the mass is stuck, its resonance lies outside the band, the amplitude is too low to see it, or mains hum hides it"
     )]
     NoResonance {
         /// Start of the band, Hz.
@@ -129,6 +144,17 @@ pub enum Refusal {
         /// The difference, %.
         share: f64,
     },
+    /// A frequency that the chirp does not explain.
+    #[error(
+        "the current has a steady {hz:.1} Hz that the voltage does not have, {share:.0} % of what is neither explained \
+         nor noise: mains hum, or another device's; twist the wires, and keep them away from mains and its adapters"
+    )]
+    Hum {
+        /// Its frequency, Hz.
+        hz: f64,
+        /// Its share of the unexplained power, %.
+        share: f64,
+    },
     /// Current that no linear system has.
     #[error(
         "the current is not that of a linear actuator: {share:.1} % of it is neither explained nor noise; the mass \
@@ -188,6 +214,17 @@ pub enum Refusal {
         by_resonance: f64,
         /// (m + Δ)/m from the coupling.
         by_coupling: f64,
+    },
+    /// The recording with the added mass has the higher resonance.
+    #[error(
+        "the second recording has the higher resonance, {with_hz:.2} Hz after {without_hz:.2} Hz, but an added mass lowers \
+         it: are the two files swapped?"
+    )]
+    Swapped {
+        /// Resonance of the first, Hz.
+        without_hz: f64,
+        /// Resonance of the second, Hz.
+        with_hz: f64,
     },
     /// The added mass does next to nothing.
     #[error(

@@ -28,6 +28,9 @@ pub(crate) struct Spectrum {
 /// Start of the noise band, as a multiple of the end of the band.
 const NOISE_FROM: f64 = 1.4;
 
+/// Least sampling rate over the end of the band: the noise band begins below half of the rate.
+pub(crate) const LEAST_RATE: f64 = 2.0 * NOISE_FROM;
+
 /// Fewest lines of a noise estimate.
 const FEWEST_LINES: usize = 50;
 
