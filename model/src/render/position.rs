@@ -136,6 +136,8 @@ pub struct Travel<F> {
     pub bend_rad: F,
     /// Its time in ticks: more than one after a gap, at most [`MOST_TICKS`].
     pub ticks: u32,
+    /// The same, as a number.
+    pub length: F,
     /// Angle of a count, rad.
     pub rad_per_count: F,
 }
@@ -166,6 +168,7 @@ impl<F: Real> Travel<F> {
             omega_end_rad_s: shaft.omega_end_rad_s,
             bend_rad: (shaft.omega_end_rad_s - shaft.omega_start_rad_s) * scale.half_step_s,
             ticks,
+            length: F::ONE,
             rad_per_count: scale.rad_per_count,
         }
     }
@@ -178,7 +181,8 @@ impl<F: Real> Travel<F> {
             ..gap.shaft
         };
         let mut travel = Self::over(&shaft, to, scale, ticks);
-        travel.bend_rad = travel.bend_rad * F::from_whole(u64::from(ticks));
+        travel.length = F::from_whole(u64::from(ticks));
+        travel.bend_rad = travel.bend_rad * travel.length;
         travel
     }
 
@@ -210,19 +214,10 @@ impl<F: Real> Travel<F> {
         (0..self.ticks).fold(x, |left, _| left - left * lost)
     }
 
-    /// What comes to so much in a tick, over all ticks.
+    /// The exponent of a decay at `rate` a tick from one share of the time to another.
     #[inline]
-    pub fn over_all(&self, per_tick: F) -> F {
-        if self.ticks == 1 {
-            per_tick
-        } else {
-            self.times_ticks(per_tick)
-        }
-    }
-
-    #[cold]
-    fn times_ticks(&self, per_tick: F) -> F {
-        per_tick * F::from_whole(u64::from(self.ticks))
+    pub fn exponent(&self, rate: F, from: F, to: F) -> F {
+        rate * self.length * (to - from)
     }
 
     /// Where the joint is after this share of the time.
@@ -269,6 +264,17 @@ pub fn rise<F: Real>(slope: F, bend: F, missing: F) -> F {
         // It does not rise: the threshold is met as the tick ends.
         F::ONE
     }
+}
+
+/// e to the power of `x` ≤ 0, which is far below 1 in a tick and may be 1 in a gap: to 1e-9 of a
+/// tick, to 5e-4 of a gap over one time constant.
+#[inline]
+pub fn decay<F: Real>(x: F) -> F {
+    let third = F::from_f64(1.0 / 3.0);
+    let quarter = F::HALF * F::HALF * x;
+    let root = F::ONE + quarter * (F::ONE + F::HALF * quarter * (F::ONE + third * quarter));
+    let square = root * root;
+    square * square
 }
 
 #[cfg(test)]

@@ -218,11 +218,15 @@ fn a_beat_within_a_gap_has_its_time() {
 fn a_decay_that_begins_within_a_gap_has_its_time() {
     let motion = ramp(20.0, 130.0);
     let spastic = EffectSettings {
-        spasticity: Some(SpasticitySettings::default()),
+        spasticity: Some(SpasticitySettings {
+            release_s: 0.02,
+            ..SpasticitySettings::default()
+        }),
         ..EffectSettings::default()
     };
     let clasp_knife = EffectSettings {
         clasp_knife: Some(ClaspKnifeSettings {
+            collapse_s: 0.01,
             onset_deg: 25.0,
             release_deg: 42.5,
             ..ClaspKnifeSettings::default()

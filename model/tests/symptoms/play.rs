@@ -2,8 +2,9 @@
 
 use super::rig::*;
 use crepitus_model::ShaftStep;
-use crepitus_model::render::effects::play::{Hold, Limits, Part, Play, short_decay};
+use crepitus_model::render::effects::play::{Hold, Limits, Part, Play};
 use crepitus_model::render::input_check::Checked;
+use crepitus_model::render::position::decay;
 use crepitus_model::render::position::{Scale, Sight, Travel};
 
 /// A tick from one angle to another, rad.
@@ -109,6 +110,15 @@ fn a_short_decay_is_the_exponential() {
     // The shortest time constant is 5 ms, a hundred ticks.
     for n in 0..=100 {
         let x = -1e-4 * f64::from(n);
-        near(short_decay(x), x.exp(), 5e-10);
+        near(decay(x), x.exp(), 5e-10);
+    }
+    // Over a gap: 32 ticks of 50 µs at 5 ms are a third.
+    for n in 0..=33 {
+        let x = -0.01 * f64::from(n);
+        near(decay(x), x.exp(), 1e-5);
+    }
+    for n in 0..=60 {
+        let x = -0.1 * f64::from(n);
+        assert!((0.0..=1.0).contains(&decay(x)), "{x}");
     }
 }

@@ -14,13 +14,13 @@
 //!
 //! Sources: all numbers are estimates; the collapse to a fifth takes 85 ms.
 
-use super::play::{Hold, Limits, Part, Play, short_decay};
+use super::play::{Hold, Limits, Part, Play};
 use super::symptom::{Bounds, Change, ClinicWords, Hear, Law, Word, sense};
 use super::{EffectSpec, Owner, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
 use crate::real::Real;
-use crate::render::position::{Position, Scale, Travel};
+use crate::render::position::{Position, Scale, Travel, decay};
 
 settings! {
     /// The clasp-knife phenomenon.
@@ -492,14 +492,14 @@ impl<F: Real> ClaspKnife<F> {
         let after_nm = if from == F::ZERO {
             travel.decayed(before_nm, with.lost)
         } else {
-            before_nm * short_decay(travel.over_all(with.rate) * (F::ONE - from))
+            before_nm * decay(travel.exponent(with.rate, from, F::ONE))
         };
         let after_nm = after_nm.settled();
         let limits = |fraction: F| {
             let decaying_nm = if fraction == F::ONE {
                 after_nm
             } else {
-                before_nm * (travel.over_all(with.rate) * (fraction - from)).exp()
+                before_nm * travel.exponent(with.rate, from, fraction).exp()
             };
             Limits {
                 lower_nm: F::ZERO,

@@ -230,13 +230,6 @@ impl<F: Real> Play<F> {
     }
 }
 
-/// e to the power of `x` ≤ 0 for a part of a tick, far below a time constant.
-#[inline]
-pub fn short_decay<F: Real>(x: F) -> F {
-    let third = F::from_f64(1.0 / 3.0);
-    F::ONE + x * (F::ONE + F::HALF * x * (F::ONE + third * x))
-}
-
 /// What a play does that is at a limit.
 #[inline]
 pub fn dragged<F: Real>(at: Hold, limit_nm: F) -> Hold {

@@ -99,7 +99,10 @@ macro_rules! effects {
             pub fn only(&self, place: usize) -> Self {
                 let mut here = (0..).map(|other| other == place);
                 Self {
-                    $($effect: self.$effect.filter(|_| here.next() == Some(true)),)*
+                    $($effect: {
+                        let is_here = here.next() == Some(true);
+                        self.$effect.filter(|_| is_here)
+                    },)*
                 }
             }
 

@@ -79,6 +79,7 @@ impl EffectSettings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::effects::SPECS;
     use crate::render::effects::clasp_knife::ClaspKnifeSettings;
     use crate::render::effects::clonus::ClonusSettings;
     use crate::render::effects::cogwheel::CogwheelSettings;
@@ -104,6 +105,20 @@ mod tests {
             texture: Some(TextureSettings::default()),
             ..EffectSettings::default()
         }
+    }
+
+    #[test]
+    fn an_effect_alone_is_that_at_its_place() {
+        let settings = stiff();
+        let alone = |name| {
+            let place = SPECS.iter().position(|spec| spec.name == name).unwrap();
+            settings.only(place)
+        };
+        assert_eq!(alone("texture").texture, settings.texture);
+        assert_eq!(alone("texture").lead_pipe, None);
+        assert_eq!(alone("lead-pipe").lead_pipe, settings.lead_pipe);
+        assert_eq!(alone("cogwheel"), EffectSettings::default());
+        assert_eq!(settings.only(SPECS.len()), EffectSettings::default());
     }
 
     #[test]

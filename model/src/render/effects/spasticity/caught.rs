@@ -14,9 +14,9 @@ use super::{SpasticitySettings, Threshold};
 use crate::joint::SettingsError;
 use crate::real::Real;
 use crate::render::effects::Timing;
-use crate::render::effects::play::{Hold, Limits, Part, Play, short_decay};
+use crate::render::effects::play::{Hold, Limits, Part, Play};
 use crate::render::effects::symptom::{Change, Hear, Word};
-use crate::render::position::{Position, Scale, Travel, rise};
+use crate::render::position::{Position, Scale, Travel, decay, rise};
 
 /// Coefficients of [`Caught`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -213,7 +213,7 @@ impl<F: Real> Caught<F> {
         let after_nm = if from == F::ZERO {
             travel.decayed(before_nm, with.lost)
         } else {
-            before_nm * short_decay(travel.over_all(with.rate) * (F::ONE - from))
+            before_nm * decay(travel.exponent(with.rate, from, F::ONE))
         };
         catch.decaying_nm = after_nm.settled();
         let part = Part::since(sense, from);
@@ -223,7 +223,7 @@ impl<F: Real> Caught<F> {
             let decaying_nm = if fraction == F::ONE {
                 after_nm
             } else {
-                before_nm * (travel.over_all(with.rate) * (fraction - from)).exp()
+                before_nm * travel.exponent(with.rate, from, fraction).exp()
             };
             Limits {
                 lower_nm: F::ZERO,
