@@ -119,10 +119,9 @@ impl Batch {
         self.filled == 0
     }
 
-    /// True if a window of the back-EMF check that begins with the next sample ends within a
-    /// block, and not with it.
-    pub fn begins_window(&self) -> bool {
-        self.filled % WINDOW == 1
+    /// True if windows of the back-EMF check from the next sample on would end with blocks.
+    pub fn ends_blocks_from_here(&self) -> bool {
+        self.filled % WINDOW == WINDOW - 1
     }
 
     /// True if the next sample ends a block.
@@ -168,6 +167,27 @@ mod tests {
         let block = batch.front().copied();
         batch.pop();
         block
+    }
+
+    #[test]
+    fn windows_from_before_a_blocks_last_tick_end_with_blocks() {
+        let counters = Counters::new();
+        let mut batch = Batch::new(0, 0);
+        for n in 0..3 * BLOCK_SAMPLES {
+            assert_eq!(
+                batch.ends_blocks_from_here(),
+                n % WINDOW == WINDOW - 1,
+                "{n}"
+            );
+            assert!(!batch.ends_block() || batch.ends_blocks_from_here());
+            batch.push(
+                Sample::default(),
+                EffectPhases::default(),
+                Revision(3),
+                BlockFlags::default(),
+                &counters,
+            );
+        }
     }
 
     #[test]

@@ -9,8 +9,9 @@
 //! window show the motion without the lag of an estimate, so this is quick: what
 //! is beyond the slack in two windows in a row, the same way, is a contradiction.
 //! A single disturbed sample at their border pulls them apart. A tick of which something is
-//! not known begins another window; what the one before it said stays. Where more than one in
-//! nine are like that, [`plausibility`](crate::drive::plausibility) ends torque.
+//! not known begins another window; what the one before it said stays. A window needs five
+//! known ticks in a row; where more than one in nine lacks a value, or more than one in six
+//! is late, [`plausibility`](crate::drive::plausibility) ends torque.
 
 use crate::drive::prepare::MotorPlan;
 use crepitus_protocol::TICK_S;
@@ -53,24 +54,23 @@ pub struct EmfCheck {
 }
 
 impl EmfCheck {
-    /// Adds a tick; true if two windows contradict. After a tick with a value that is not
-    /// known, `None`, the next window begins where it `may_begin`: one that ended with a block
-    /// of telemetry would do so for ever, in the most expensive tick that there is.
+    /// Adds a tick; true if two windows contradict. `None`, if a value of the tick is not
+    /// known, begins another window. After one that ends where the next `is_unhandy`, that
+    /// begins a tick later: windows that end with blocks of telemetry would do so for ever, in
+    /// the most expensive tick that there is.
     pub fn contradicts(
         &mut self,
         tick: Option<Tick>,
         motor: &MotorPlan,
         rad_per_count: f32,
-        may_begin: impl FnOnce() -> bool,
+        is_unhandy: impl FnOnce() -> bool,
     ) -> bool {
         let Some(tick) = tick else {
             self.ticks = None;
             return false;
         };
         let Some(ticks) = self.ticks else {
-            if may_begin() {
-                self.begin(&tick);
-            }
+            self.begin(&tick);
             return false;
         };
         let ticks = ticks.saturating_add(1);
@@ -83,7 +83,11 @@ impl EmfCheck {
         }
         let beyond = self.beyond(&tick, motor, rad_per_count);
         let contradicts = beyond != 0 && beyond == self.was_beyond;
-        self.begin(&tick);
+        if is_unhandy() {
+            self.ticks = None;
+        } else {
+            self.begin(&tick);
+        }
         self.was_beyond = beyond;
         contradicts
     }
@@ -144,7 +148,7 @@ mod tests {
                 current_a,
                 count: i32::MAX.wrapping_add((angle_rad / RAD_PER_COUNT).floor() as i32),
             });
-            check.contradicts(Some(tick), &motor, RAD_PER_COUNT, || true)
+            check.contradicts(Some(tick), &motor, RAD_PER_COUNT, || false)
         })
     }
 
@@ -194,7 +198,8 @@ mod tests {
             current_a: 0.0,
             count: (f32::from(n) * 5e-5 / RAD_PER_COUNT).floor() as i32,
         };
-        for period in 2..=12 {
+        for (period, place) in (2..=12).flat_map(|period| [0, 1, 2, 3].map(|place| (period, place)))
+        {
             let known = |n: u16, tick: Tick| (!n.is_multiple_of(period)).then_some(tick);
             let mut check = EmfCheck::default();
             let found = (0..200).find(|n| {
@@ -202,18 +207,40 @@ mod tests {
                     count: 0,
                     ..fits(*n)
                 };
-                check.contradicts(known(*n, stands), &motor, RAD_PER_COUNT, || true)
+                let is_unhandy = || n % u16::from(TICKS) == place;
+                check.contradicts(known(*n, stands), &motor, RAD_PER_COUNT, is_unhandy)
             });
             // A window needs five ticks in a row.
             assert_eq!(found.is_none(), period < 6, "one in {period}: {found:?}");
-            assert!(found.is_none_or(|n| n <= 17), "one in {period}: {found:?}");
+            assert!(found.is_none_or(|n| n <= 18), "one in {period}: {found:?}");
             let mut check = EmfCheck::default();
             for n in 0..400 {
                 let tick = known(n, fits(n));
                 assert!(
-                    !check.contradicts(tick, &motor, RAD_PER_COUNT, || true),
+                    !check.contradicts(tick, &motor, RAD_PER_COUNT, || false),
                     "{period}"
                 );
+            }
+        }
+    }
+
+    /// After the first, no window ends where it would be unhandy.
+    #[test]
+    fn windows_end_beside_the_place_that_is_unhandy() {
+        let motor = motor();
+        for place in 0..4 {
+            let (mut check, mut before) = (EmfCheck::default(), None);
+            for n in 0..60_u16 {
+                let tick = Tick {
+                    volts: 0.0,
+                    current_a: 0.0,
+                    count: 0,
+                };
+                let is_unhandy = || n % u16::from(TICKS) == place;
+                check.contradicts(Some(tick), &motor, RAD_PER_COUNT, is_unhandy);
+                let has_ended = before == Some(TICKS - 1) && check.ticks != Some(TICKS);
+                assert!(!has_ended || n < 8 || !is_unhandy(), "{n}");
+                before = check.ticks;
             }
         }
     }
@@ -230,7 +257,7 @@ mod tests {
                     count: 0,
                 };
                 assert!(
-                    !check.contradicts(Some(tick), &motor, RAD_PER_COUNT, || true),
+                    !check.contradicts(Some(tick), &motor, RAD_PER_COUNT, || false),
                     "{at}"
                 );
             }

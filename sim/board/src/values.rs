@@ -357,7 +357,10 @@ mod tests {
             ("crepitus.render", 0.0),
             ("clonus.render", 0.0),
             ("friction-compensation.render", 0.0),
-            ("friction-compensation.share", 0.8),
+            // The numbers of the brace's stay.
+            ("friction-compensation.share", 0.7),
+            ("vibration-actuator.render", 0.0),
+            ("vibration-actuator.resistance_ohm", 2.4),
             ("encoder.lines", 1000.0),
             ("motor.bandwidth_hz", value(&now, "motor.bandwidth_hz")),
             ("limits.torque_nm", 4.0),

@@ -21,9 +21,14 @@ const CHIRP: PlayedChirp = PlayedChirp {
 
 /// A joint that stands still and carries the actuator as a vice would, armed.
 fn armed() -> Host {
+    armed_at(0.0)
+}
+
+/// The same of one that turns.
+fn armed_at(omega_rad_s: f64) -> Host {
     let mut host = Host::new(
         &scene(
-            r#"
+            &r#"
 version = 1
 title = "Actuator in a vice"
 duration_s = 60.0
@@ -43,7 +48,11 @@ preset = "coarse"
 [effects.vibration-actuator]
 gain = 0.0
 [effects.reaction-mass]
-"#,
+"#
+            .replace(
+                "velocity_rad_s = 0.0",
+                &format!("velocity_rad_s = {omega_rad_s:?}"),
+            ),
         ),
         &Start::default(),
     );
@@ -193,4 +202,27 @@ fn switching_the_actuator_off_ends_it_for_good() {
         host.run(1);
         assert_eq!(host.device.board().leg().coil_v().unwrap_or(0.0), 0.0);
     }
+}
+
+/// A gain that fades in behind a chirp would be a step of voltage at its end.
+#[test]
+fn a_gain_that_is_committed_meanwhile_ends_it_for_good() {
+    let mut host = armed_at(0.05);
+    let chirp = PlayedChirp {
+        duration_ms: 5_000,
+        ..CHIRP
+    };
+    host.subscribe();
+    assert_eq!(play(&mut host, chirp), Ok(Answer::Done));
+    host.run(1_000);
+    host.set("vibration-actuator.gain", 1.0);
+    host.run(4_000);
+    host.samples = Some(Vec::new());
+    host.run(20_000);
+    let samples = host.samples.take().unwrap();
+    let chirps = samples
+        .iter()
+        .filter(|sample| sample.flags.has(SampleFlags::CHIRP));
+    assert_eq!((chirps.count(), samples.len() > 15_000), (0, true));
+    assert_eq!(host.status().state, State::Armed);
 }

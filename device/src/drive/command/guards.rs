@@ -100,7 +100,9 @@ impl Command {
             });
         let (motor, batch) = (self.motor.plan(), &self.batch);
         self.emf_check
-            .contradicts(tick, motor, self.rad_per_count, || batch.begins_window())
+            .contradicts(tick, motor, self.rad_per_count, || {
+                batch.ends_blocks_from_here()
+            })
     }
 
     /// Checks that a floating bridge has no current: a shorted switch and a diode
