@@ -334,7 +334,7 @@ fn caption(symptom: &Symptom, drawn: &Drawn) -> String {
         .to_owned();
     if !drawn.lines.is_empty() {
         caption += " The wide lines behind are the limits that follow from the settings.";
-    } else if !symptom.words.has_changes() || symptom.shows_all() {
+    } else if symptom.words.has_changes() || symptom.shows_all() {
         caption += " Its settings changed, or are not known: no limits are drawn.";
     }
     if symptom.shows_all() {

@@ -74,7 +74,7 @@ impl Shown {
 }
 
 /// Of the plant.
-const SHOWN: [Shown; 11] = [
+const SHOWN: [Shown; 16] = [
     of_motor("motor_current_a", "Motor current", "Current (A)"),
     of_motor("motor_voltage_v", "Motor voltage", "Voltage (V)"),
     Shown {
@@ -100,7 +100,24 @@ const SHOWN: [Shown; 11] = [
         "Leg: weight and passive moment",
         "Torque (N·m)",
     ),
+    shown(
+        "limb_stretch_nm",
+        "Pull along the shank: torque on the leg",
+        "Torque (N·m)",
+    ),
+    shown("coil_voltage_v", "Coil of the actuator", "Voltage (V)"),
     shown("coil_current_a", "Coil of the actuator", "Current (A)"),
+    shown(
+        "actuator_torque_nm",
+        "Actuator: torque on the shell",
+        "Torque (N·m)",
+    ),
+    shown(
+        "seat_torque_nm",
+        "Seat: torque of the shell on the leg",
+        "Torque (N·m)",
+    ),
+    shown("shell_weight_nm", "Weight of the shell", "Torque (N·m)"),
     Shown {
         scale: 1e3,
         ..shown("excursion_m", "Excursion of the reaction mass", "Way (mm)")
@@ -264,4 +281,62 @@ fn columns(columns: &[Column]) -> Vec<(usize, Shown)> {
             Some((at, shown))
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_plant::effects::EFFECTS;
+    use crepitus_scene::{Overrides, Scene};
+    use std::path::Path;
+
+    /// Columns without a chart of their own: they stand in another one, or are counts.
+    const WITHOUT: [&str; 7] = [
+        "hand_torque_nm",
+        "hand_impact_nms",
+        "leg_angle_rad",
+        "leg_omega_rad_s",
+        "intended_angle_rad",
+        "limb_stretch_m",
+        "stop_knocks",
+    ];
+
+    #[test]
+    fn what_an_effect_of_the_plant_adds_has_a_chart() {
+        let names = |effects: &str| -> Vec<&str> {
+            let text = format!(
+                "version = 1\ntitle = \"all\"\nduration_s = 0.1\n[motion]\nkind = \"sine\"\n\
+                 amplitude_deg = 30\nfrequency_hz = 1.0\n[solver]\nkind = \"exact-events\"\n\
+                 step_s = 5e-5\n{effects}"
+            );
+            let scene = Scene::parse(Path::new("all.toml"), &text, &Overrides::default());
+            let columns = crepitus_scene::run::columns(&scene.expect("a scene"));
+            columns.iter().map(|column| column.name).collect()
+        };
+        let alone = names("[effects.crepitus]\n[effects.encoder]\n");
+        let all: Vec<String> = EFFECTS
+            .iter()
+            .map(|effect| format!("[effects.{}]\n", effect.name))
+            .collect();
+        let of_device = SPECS
+            .iter()
+            .filter_map(|spec| spec.phases.map(|p| p.column));
+        let of_device: Vec<&str> = of_device.collect();
+        let (mut charts, mut missing) = (0, Vec::new());
+        for name in names(&all.concat()) {
+            let has_chart = SPECS
+                .iter()
+                .map(stage)
+                .chain(SHOWN)
+                .any(|shown| shown.column == name);
+            let is_known =
+                alone.contains(&name) || of_device.contains(&name) || WITHOUT.contains(&name);
+            if !has_chart && !is_known {
+                missing.push(name);
+            }
+            charts += usize::from(has_chart);
+        }
+        assert_eq!(missing, [""; 0], "on no page of a report");
+        assert!(charts >= SHOWN.len());
+    }
 }
