@@ -305,9 +305,19 @@ fn a_broken_coil_ends_every_run_of_the_same_device() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("broken.toml");
     let shipped = fs::read_to_string(repository().join("scenes/actuator-in-a-vice.toml")).unwrap();
-    let (broken, _) = shipped.split_once("[effects.reaction-mass]").unwrap();
+    let (broken, _) = shipped.split_once("[effects.vibration-actuator]").unwrap();
     fs::write(&file, broken).unwrap();
     let served = support::served::Served::with_scene(file.to_str().unwrap());
+    // The device believes in a coil that is not there.
+    let set = [
+        "params",
+        "set",
+        "vibration-actuator.render=on",
+        "vibration-actuator.gain=0",
+        "--device",
+        "knee",
+    ];
+    assert!(served.command(&set).status().unwrap().success());
     let verb = [
         "identify-actuator",
         "--zero",

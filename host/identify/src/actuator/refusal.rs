@@ -25,8 +25,9 @@ pub enum Refusal {
     },
     /// Too few samples to tell noise from misfit.
     #[error(
-        "{rows_per_s:.0} rows per second are too few for a band up to {to_hz:.0} Hz: sample faster, at \
-         {needed_per_s:.0} rows per second or more, or end the chirp lower with --to-hz, at {end_hz:.0} Hz or below"
+        "{rows_per_s:.0} rows per second are too few: of this chirp the band up to {to_hz:.0} Hz is fitted, and the \
+         noise is taken from above it; sample faster, at {needed_per_s:.0} rows per second or more, or end the \
+         chirp lower with --to-hz"
     )]
     FewRows {
         /// Sampling rate, Hz.
@@ -35,8 +36,6 @@ pub enum Refusal {
         to_hz: f64,
         /// Least sampling rate for it, Hz.
         needed_per_s: f64,
-        /// Largest end of the band for the sampling rate, Hz.
-        end_hz: f64,
     },
     /// The recording does not begin and end at rest.
     #[error(

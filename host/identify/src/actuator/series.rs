@@ -233,10 +233,13 @@ impl Series {
         let series = Self::new(step_s, &volts, &amperes)?;
         match hold_s {
             None => Ok(series),
-            Some(tick_s) if tick_s > 0.0 && tick_s <= step_s => Ok(series.held(Hold {
-                tick_s,
-                current: Current::Ticks,
-            })),
+            // The interval is a mean of rounded times.
+            Some(tick_s) if tick_s > 0.0 && tick_s <= step_s * (1.0 + 1e-6) => {
+                Ok(series.held(Hold {
+                    tick_s,
+                    current: Current::Ticks,
+                }))
+            }
             Some(hold_s) => Err(SeriesError::Hold { hold_s, step_s }),
         }
     }

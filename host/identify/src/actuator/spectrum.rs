@@ -28,13 +28,15 @@ pub(crate) struct Spectrum {
 /// Start of the noise band, as a multiple of the end of the band.
 const NOISE_FROM: f64 = 1.4;
 
-/// Least sampling rate over the end of the band: the noise band begins below half of the rate.
-pub(crate) const LEAST_RATE: f64 = 2.0 * NOISE_FROM;
-
 /// Fewest lines of a noise estimate.
 const FEWEST_LINES: usize = 50;
 
 impl Spectrum {
+    /// Least sampling rate, Hz: half of it is above the band by the fewest lines of noise.
+    pub(crate) fn least_rate(band: Band, duration_s: f64) -> f64 {
+        2.0 * (NOISE_FROM * band.to_hz + FEWEST_LINES as f64 / duration_s)
+    }
+
     /// Transforms the whole recording, without a window, since it begins and ends at rest.
     pub(crate) fn of(series: &Series, band: Band) -> Self {
         let (volts, amperes) = (transformed(series.volts()), transformed(series.amperes()));

@@ -50,8 +50,8 @@ has to be on and its own command silent: `crepitus params set vibration-actuator
 vibration-actuator.gain=0`. The chirp ends with the torque, by any key of `arm`, a stop or a fault, and is limited \
 to 0.92 of the supply, to a current that the sensor can tell, and to twice the stroke by the parameters in use.
 
-FILE is CSV with the columns t_s, volts, amperes: evenly spaced, at least 500 rows a second and 2.8 for each \
-hertz of the chirp's end, 1400 for 500 Hz (faster ones are averaged), from before the chirp until 0.5 s after its end. Any logarithmic or linear chirp from about 8 to \
+FILE is CSV with the columns t_s, volts, amperes: evenly spaced, at least 500 rows a second, for a chirp up \
+to 500 Hz 1240 (faster ones are averaged), from before the chirp until 0.5 s after its end. Any logarithmic or linear chirp from about 8 to \
 500 Hz will do, at an amplitude that keeps the mass off its stops.
 
 Intervals are those of 95 %, from the noise of the current; an error of the current sensor's gain adds to them. \

@@ -64,8 +64,8 @@ enum Action {
     /// Apply a preset or a scene, in one commit.
     ///
     /// A preset is a whole knee: its effects go on, at its values or at their defaults; other effects
-    /// of the knee go off and to their defaults. A scene does the same with all effects, friction
-    /// compensation included, which presets leave as it is. Encoder, motor, limits, range and sensor
+    /// of the knee go off and to their defaults. A scene does so, too, and also switches friction
+    /// compensation and vibration actuator on or off, which presets leave as they are. Encoder, motor, limits, range and sensor
     /// are the brace's, and stay. A file without `version` is a preset; [effects.NAME] tables are enough.
     Apply {
         /// A preset, a scene that ships, or a file of either.
@@ -86,7 +86,8 @@ enum Action {
     /// Set effects to their defaults, in one commit.
     ///
     /// By default all of the knee, which then has the paper's crepitus and nothing else. Friction
-    /// compensation and the brace's own groups (encoder, motor, limits, …) are reset by name only.
+    /// compensation, the vibration actuator and the brace's own groups (encoder, motor, limits, …)
+    /// are reset by name only.
     Reset {
         /// Effects or other groups of parameters [default: all effects of the knee].
         #[arg(value_name = "EFFECT", value_parser = changes::groups())]

@@ -28,8 +28,9 @@ const AFTER: usize = TICKS_PER_S as usize * 3 / 5;
 /// Ticks in which the chirp has to begin after it was accepted.
 const BEGINS_WITHIN: usize = TICKS_PER_S as usize / 5;
 
-/// Time after arming in which the coil has to be driven: without a fault it is at once.
-const DRIVEN_WITHIN: Duration = Duration::from_secs(1);
+/// Time after arming in which the coil has to be driven for [`BEFORE`] and [`BEGINS_WITHIN`], 0.4 s,
+/// without a lost sample: without a fault it is at once.
+const DRIVEN_WITHIN: Duration = Duration::from_secs(2);
 
 /// Plays a chirp, and a second one once a mass is added.
 pub(super) fn measured(
@@ -161,7 +162,8 @@ impl Listening {
         let ticks = last - first + 1;
         if ticks != settings.duration_ticks as usize {
             return Err(Failure::Work(format!(
-                "the chirp has ended after {:.2} of {:.2} s: see `crepitus info` for a fault of the coil",
+                "the chirp has ended after {:.2} of {:.2} s: another program has committed vibration-actuator.gain, \
+                 or the coil has a fault: see `crepitus info`",
                 ticks as f64 * TICK_S,
                 f64::from(settings.duration_ticks) * TICK_S
             )));
@@ -232,11 +234,11 @@ impl Follower for Listening {
                 return Ok(false);
             }
             let armed_at = *self.armed_at.get_or_insert(client.now());
-            if driven == 0 && client.now() > armed_at + DRIVEN_WITHIN {
+            if client.now() > armed_at + DRIVEN_WITHIN {
                 refuse_coil_fault(client)?;
                 return Err(Failure::Work(format!(
-                    "the coil is not driven {} s after arming, so the chirp was not played: check that \
-                     vibration-actuator.render is on, and see `crepitus doctor`",
+                    "the coil is not driven without a pause within {} s of arming, so the chirp was not played: check \
+                     that vibration-actuator.render is on and that no samples are lost, and see `crepitus doctor`",
                     DRIVEN_WITHIN.as_secs()
                 )));
             }
@@ -257,6 +259,7 @@ mod tests {
     use crepitus_connection::Simulated;
     use crepitus_model::control::chirp::ChirpSettings;
     use crepitus_protocol::State;
+    use crepitus_protocol::parameters::find;
     use crepitus_scene::Overrides;
     use crepitus_scene::shipped::{self, Source};
     use std::path::Path;
@@ -295,12 +298,16 @@ mod tests {
     fn a_coil_with_a_fault_ends_the_wait() {
         let shipped = Source::find(Path::new("actuator-in-a-vice")).expect("a scene");
         let (broken, _) = (shipped.text)
-            .split_once("[effects.reaction-mass]")
+            .split_once("[effects.vibration-actuator]")
             .expect("a coil");
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("broken.toml");
         std::fs::write(&file, broken).expect("a file");
         let mut client = client(&file);
+        // The device believes in a coil that is not there.
+        let on = ["render", "gain"].map(|key| find(&format!("vibration-actuator.{key}")));
+        let on = on.map(|found| found.expect("a parameter").0);
+        client.set(&[(on[0], 1.0), (on[1], 0.0)]).expect("set");
         for _ in 0..2 {
             let (text, took) = failed(&mut client);
             assert!(text.contains("of the coil"), "{text}");
