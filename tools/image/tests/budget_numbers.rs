@@ -1,6 +1,7 @@
 //! Bounds of the firmware's budget that are constants of the sources are still those.
 
 use crepitus_device::comms::sessions::SESSIONS;
+use crepitus_model::render::effects::SYMPTOMS;
 use crepitus_model::render::position::MOST_TICKS;
 use crepitus_protocol::crash::{HEAD_WORDS, PART_WORDS};
 use crepitus_protocol::frame::BODY_BYTES;
@@ -14,6 +15,7 @@ use toml::Value;
 fn bounds_that_name_a_constant_have_its_value() {
     let constants = [
         ("SESSIONS", SESSIONS),
+        ("SYMPTOMS", SYMPTOMS.len()),
         ("MOST_TICKS", MOST_TICKS as usize),
         ("HEAD_WORDS", HEAD_WORDS),
         ("PART_WORDS", PART_WORDS),
