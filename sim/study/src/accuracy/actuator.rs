@@ -67,6 +67,7 @@ pub fn actuator_table(points: &[ActuatorPoint]) -> Table<'_, ActuatorPoint> {
     Table::of(points)
         .people("step", |point| point.step_s)
         .rounded(microseconds)
+        .left()
         .people("precision", |point| point.precision)
         .people("error", |point| point.error)
         .rounded(scientific)
