@@ -217,7 +217,7 @@ fn frames_of_every_length_around_a_packet_arrive() {
         host.parameters().expect("parameters");
         let took = host.now().saturating_sub(begin);
         // Sent as it is made, not with the next tick of comms.
-        assert!(took < Duration::from_micros(2_200), "{took:?}");
+        assert!(took < Duration::from_micros(2_500), "{took:?}");
         worst = worst.max(took);
     }
     println!("parameters: at worst after {worst:?}");
