@@ -140,23 +140,56 @@ pub fn with_joint<F: Real, V: JointVisitor<F>>(
         return Err(refused(reason));
     }
     Ok(match settings.convention {
-        Convention::Frozen => match solver {
-            Solver::ExactBreak => start.frozen::<ExactBreak, V>(visitor),
-            Solver::ExactInterpolated => start.frozen::<Interpolated, V>(visitor),
-            Solver::ExactEvents => start.frozen::<ExactEvents, V>(visitor),
-            // But for `exact` they were refused.
-            Solver::Exact
-            | Solver::Euler
-            | Solver::SemiImplicitEuler
-            | Solver::Verlet
-            | Solver::Rk4
-            | Solver::ImplicitEuler
-            | Solver::Rk4Events
-            | Solver::ExactHermite => start.frozen::<EndOfStep, V>(visitor),
-        },
+        Convention::Frozen => with_frozen_locator(solver, Begun { start, visitor }),
         Convention::Paper => start.velocity_match::<Paper, V>(solver, visitor),
         Convention::Physical => start.velocity_match::<Physical, V>(solver, visitor),
     })
+}
+
+/// Work that is generic over how `frozen` finds its events.
+pub trait LocatorVisitor<F: Real> {
+    /// Result of the visit.
+    type Output;
+
+    /// Called with the locator as a type.
+    fn visit<L: Locate<F, Shape = Linear>>(self) -> Self::Output;
+}
+
+/// Visits with the locator of a rung under `frozen`; at the end of the step for one that is
+/// [refused](Solver::refusal) there.
+pub fn with_frozen_locator<F: Real, V: LocatorVisitor<F>>(solver: Solver, visitor: V) -> V::Output {
+    match solver {
+        Solver::ExactBreak => visitor.visit::<ExactBreak>(),
+        Solver::ExactInterpolated => visitor.visit::<Interpolated>(),
+        Solver::ExactEvents => visitor.visit::<ExactEvents>(),
+        Solver::Exact
+        | Solver::Euler
+        | Solver::SemiImplicitEuler
+        | Solver::Verlet
+        | Solver::Rk4
+        | Solver::ImplicitEuler
+        | Solver::Rk4Events
+        | Solver::ExactHermite => visitor.visit::<EndOfStep>(),
+    }
+}
+
+/// A joint of `frozen`, but for its locator.
+struct Begun<F, V> {
+    start: Start<F>,
+    visitor: V,
+}
+
+impl<F: Real, V: JointVisitor<F>> LocatorVisitor<F> for Begun<F, V> {
+    type Output = V::Output;
+
+    fn visit<L: Locate<F, Shape = Linear>>(self) -> V::Output {
+        let Start {
+            coefficients,
+            omega_rad_s,
+        } = self.start;
+        self.visitor
+            .visit(Frozen::<F, L>::new(coefficients, omega_rad_s))
+    }
 }
 
 /// Initial state of every joint.
@@ -166,10 +199,6 @@ struct Start<F> {
 }
 
 impl<F: Real> Start<F> {
-    fn frozen<L: Locate<F, Shape = Linear>, V: JointVisitor<F>>(self, visitor: V) -> V::Output {
-        visitor.visit(Frozen::<F, L>::new(self.coefficients, self.omega_rad_s))
-    }
-
     fn velocity_match<C: StickTorque<F>, V: JointVisitor<F>>(
         self,
         solver: Solver,

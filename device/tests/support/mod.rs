@@ -64,7 +64,7 @@ pub(crate) struct Bench {
     nonce: Nonce,
     replies: Vec<Reply>,
     pub(crate) blocks: Vec<Block>,
-    /// What comms asks the drive for its version with is lost.
+    /// The request of comms for the drive's version is lost.
     pub(crate) loses_hello: bool,
     /// Prescribed encoder counts and velocities of the next ticks.
     pub(crate) script: VecDeque<(i32, f64)>,

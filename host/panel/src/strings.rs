@@ -45,7 +45,7 @@ mod tests {
         texts.keys().filter(is_own).cloned().collect()
     }
 
-    /// What the device has more of than the page has texts for would be shown by its identifier.
+    /// A group, state or disorder without a text would be shown by its identifier.
     #[test]
     fn what_a_device_has_is_named() {
         let known = keys("en");

@@ -191,7 +191,7 @@ fn a_silent_drive_ends_torque_with_a_fault() {
     client.arm().unwrap();
 }
 
-/// Whoever gives up arming does not leave a device that is armed.
+/// A program that stops waiting for arming disarms the device.
 #[test]
 fn arming_that_is_not_answered_is_withdrawn() {
     let (shared, mut client) = connected();

@@ -52,7 +52,7 @@ const SECOND_DEVIATIONS: f64 = 10.0;
 const SECOND_HEIGHT: f64 = 0.02;
 const SECOND_SHARE: f64 = 0.35;
 
-/// How far the frequency of mains, or a multiple of it, may be off, Hz.
+/// Tolerance of the mains frequency and its multiples, Hz.
 const MAINS_HZ: f64 = 0.5;
 
 /// Share of the misfit in two lines from which it is a hum.

@@ -16,7 +16,7 @@ pub(crate) const NOMINAL: Impedance = Impedance {
     delay: 0.0,
 };
 
-/// What is added to the current.
+/// Disturbances of the current.
 #[derive(Clone, Copy)]
 pub(crate) struct Added {
     /// Half width of evenly distributed noise, A.

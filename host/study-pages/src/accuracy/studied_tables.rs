@@ -1,4 +1,4 @@
-//! What was studied besides the rungs: the other symptoms, the stage of the vibration
+//! Results besides those of the rungs: the other symptoms, the stage of the vibration
 //! actuator, and what all of it costs on the device's core.
 
 use crepitus_plot::number::rounded;

@@ -13,8 +13,8 @@ use crepitus_model::render::effects::EffectSpec;
 use crepitus_model::render::effects::symptom::Change;
 use crepitus_model::render::input_check::{Checked, Sample};
 use crepitus_model::render::{Bare, Seen, Shown};
-use crepitus_model::solver::Solver;
-use crepitus_model::solver::locate::{EndOfStep, ExactBreak, ExactEvents, Interpolated, Locate};
+use crepitus_model::solver::locate::Locate;
+use crepitus_model::solver::{LocatorVisitor, Solver, with_frozen_locator};
 use crepitus_model::{Real, Settings, SettingsError, StickSlip, Validated};
 use crepitus_plant::chain::Body;
 use std::cell::RefCell;
@@ -165,20 +165,7 @@ fn with_sensor<F: Precise, S: Sensor<F> + 'static>(
         let stages = stages::bare(scene, step_s, Bare(joint))?;
         return Ok(maker.joined(stages));
     }
-    match solver {
-        Solver::ExactBreak => maker.drive::<F, ExactBreak>(),
-        Solver::ExactInterpolated => maker.drive::<F, Interpolated>(),
-        Solver::ExactEvents => maker.drive::<F, ExactEvents>(),
-        // But for `exact` they are refused under `frozen`.
-        Solver::Exact
-        | Solver::Euler
-        | Solver::SemiImplicitEuler
-        | Solver::Verlet
-        | Solver::Rk4
-        | Solver::ImplicitEuler
-        | Solver::Rk4Events
-        | Solver::ExactHermite => maker.drive::<F, EndOfStep>(),
-    }
+    with_frozen_locator::<F, _>(solver, maker)
 }
 
 /// A device that only looks.
@@ -206,17 +193,18 @@ struct Maker<'a, S> {
     sensor: S,
 }
 
-impl<S: 'static> Maker<'_, S> {
-    /// With the joint that the drive renders.
-    fn drive<F: Real, L: Locate<F, Shape = Linear>>(self) -> Result<Box<dyn Device>, SettingsError>
-    where
-        S: Sensor<F>,
-    {
+/// With the joint that the drive renders.
+impl<F: Real, S: Sensor<F> + 'static> LocatorVisitor<F> for Maker<'_, S> {
+    type Output = Result<Box<dyn Device>, SettingsError>;
+
+    fn visit<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
         let joint = stages::crepitus::<F, L>(self.scene, &self.settings, self.step_s)?;
         let stages = stages::drive(self.scene, self.step_s, joint)?;
         Ok(self.joined(stages))
     }
+}
 
+impl<S: 'static> Maker<'_, S> {
     fn joined<F: Real, P: HasJoint<F> + 'static>(self, mut stages: P) -> Box<dyn Device>
     where
         S: Sensor<F>,

@@ -2,13 +2,14 @@
 //! ramp, and every adjustment is observed.
 
 use super::input::Change;
-use super::locators::{WithLocator, with_locator};
+use super::locators::with_locator;
 use super::observation::Observation;
 use super::subject::Subject;
 use crate::sampling::Sampling;
 use crate::true_events::TimedEvent;
 use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::ramp::Ramp;
+use crepitus_model::solver::LocatorVisitor;
 use crepitus_model::solver::locate::Locate;
 use crepitus_model::{
     EventKind, Frozen, Phase, Real, Settings, SettingsError, ShaftStep, StepCoefficients,
@@ -44,10 +45,10 @@ pub(super) fn stored_j<F: Real, L: Locate<F, Shape = Linear>>(joint: &Frozen<F, 
     }
 }
 
-impl<F: Real> WithLocator<F> for ParameterChanges<'_> {
+impl<F: Real> LocatorVisitor<F> for ParameterChanges<'_> {
     type Output = Result<Observation, SettingsError>;
 
-    fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
+    fn visit<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
         let step_s = self.sampling.step_s();
         let coefficients = StepCoefficients::<F>::new(&self.settings, step_s)?;
         let mut joint = Frozen::<F, L>::new(coefficients, F::ZERO);

@@ -2,7 +2,7 @@
 //! committed during the run.
 
 use super::input::Rendered;
-use super::locators::{WithLocator, with_locator};
+use super::locators::with_locator;
 use super::observation::Observation;
 use super::observe::bits;
 use super::parameter_changes::SLEW_NM_PER_S;
@@ -13,6 +13,7 @@ use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::Limit;
 use crepitus_model::render::input_check::InputLimits;
+use crepitus_model::solver::LocatorVisitor;
 use crepitus_model::solver::locate::Locate;
 use crepitus_model::{
     Event, Real, Renderer, Sample, Settings, SettingsError, ShaftStep, StepCoefficients, StickSlip,
@@ -48,10 +49,10 @@ impl RenderedRun<'_> {
     }
 }
 
-impl<F: Real> WithLocator<F> for RenderedRun<'_> {
+impl<F: Real> LocatorVisitor<F> for RenderedRun<'_> {
     type Output = Result<Observation, SettingsError>;
 
-    fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
+    fn visit<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
         let (step_s, rendered) = (self.sampling.step_s(), self.rendered);
         let commits = self.commits::<F>()?;
         let mut view = ShaftView::new(self.sampling.walk_from(0), rendered.counts, step_s)?;

@@ -3,13 +3,14 @@
 
 use super::criterion::BOUND_SLACK;
 use super::input::Shake;
-use super::locators::{WithLocator, with_locator};
+use super::locators::with_locator;
 use super::observation::Observation;
 use super::subject::Subject;
 use crate::sampling::Sampling;
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::input_check::InputLimits;
+use crepitus_model::solver::LocatorVisitor;
 use crepitus_model::solver::locate::Locate;
 use crepitus_model::{
     EnergyObserver, Real, Renderer, Sample, Settings, SettingsError, ShaftStep, StepCoefficients,
@@ -72,10 +73,10 @@ impl ShakingHand<'_> {
 
 struct Watched<'a, W>(ShakingHand<'a>, W);
 
-impl<F: Real, W: FnMut(&Tick)> WithLocator<F> for Watched<'_, W> {
+impl<F: Real, W: FnMut(&Tick)> LocatorVisitor<F> for Watched<'_, W> {
     type Output = Result<Returned, SettingsError>;
 
-    fn run<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
+    fn visit<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
         let Self(run, mut on_tick) = self;
         let step_s = run.sampling.step_s();
         let coefficients = StepCoefficients::<F>::new(&run.settings, step_s)?;
