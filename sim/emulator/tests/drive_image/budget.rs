@@ -44,12 +44,13 @@ const LIMITS: [Limits; 2] = [
         cold_share: 39,
         render_cycles: 900,
     },
-    // About 3 % above what was measured.
+    // Figures with the modelled flash move by a percent of a tick or two with the place of the
+    // code, which differs between two builds of one source.
     Limits {
         flash: Flash::Modelled,
-        share: 55,
-        commit_share: 63,
-        cold_share: 53,
+        share: 56,
+        commit_share: 65,
+        cold_share: 56,
         render_cycles: 1_310,
     },
 ];

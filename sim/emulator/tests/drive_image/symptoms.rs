@@ -223,7 +223,8 @@ struct All {
     commit_share: u64,
 }
 
-/// Limits just above the measured shares. Goals with 0 wait states: 55, and 70 with a commit.
+/// Limits above the measured shares; those with the modelled flash leave room for the place of
+/// the code. Goals with 0 wait states: 55, and 70 with a commit.
 const ALL: [All; 2] = [
     All {
         flash: Flash::ZeroWaitStates,
@@ -232,8 +233,8 @@ const ALL: [All; 2] = [
     },
     All {
         flash: Flash::Modelled,
-        share: 79,
-        commit_share: 87,
+        share: 82,
+        commit_share: 89,
     },
 ];
 
