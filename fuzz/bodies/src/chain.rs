@@ -216,3 +216,17 @@ impl Chain {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crepitus_protocol::State;
+
+    /// Without torque most of the chain would never be searched.
+    #[test]
+    fn all_that_arming_needs_arms() {
+        let mut chain = Chain::new(None);
+        chain.step(&mut Bytes::new(&[4, 0]));
+        assert_eq!(chain.device.drive.state(), State::Armed);
+    }
+}

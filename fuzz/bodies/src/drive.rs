@@ -43,6 +43,9 @@ const MOST_NM: f32 = 6.5;
 /// More runs than a status takes to be made, with the answers that go before it.
 const STATUS_RUNS: usize = 60;
 
+/// The most milliseconds that a drive in order takes from a commit to its revision.
+const MOST_PREPARING_MS: u32 = 20;
+
 /// Bytes that say how it starts.
 pub(crate) const HEAD_BYTES: usize = 5;
 
@@ -262,9 +265,16 @@ impl Bench {
             7 => self.read(usize::from(bytes.byte() % 8)),
             // All that arming needs.
             8 => {
-                self.commit(Revision(1), &Values::default());
-                self.heartbeat(5_000);
-                self.run(20, &Readings::good());
+                let revision = Revision(1);
+                self.commit(revision, &Values::default());
+                // It prepares values between its ticks, some of them in each.
+                for _ in 0..MOST_PREPARING_MS {
+                    self.heartbeat(5_000);
+                    self.run(20, &Readings::good());
+                    if self.drive.revision() == revision {
+                        break;
+                    }
+                }
                 self.heartbeat(5_000);
                 for order in [Order::Zero, Order::Arm] {
                     self.number = self.number.wrapping_add(1);
@@ -416,7 +426,8 @@ impl Bench {
             self.drive.prepare();
         }
         self.line_is_on = outputs.enable;
-        let powered = outputs.enable && inputs.enable_is_on;
+        // Each line closes the bridge's gate by itself.
+        let powered = outputs.enable && inputs.enable_is_on && inputs.comms_enable_is_on;
         self.winding.tick(
             if powered {
                 outputs.bridge
@@ -549,4 +560,27 @@ fn block_dropped(block: &crepitus_protocol::telemetry::Block) -> u32 {
         assert!(is_energised || sample.torque_nm == 0.0, "{sample:?}");
     }
     block.dropped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without torque most of the drive would never be searched.
+    #[test]
+    fn all_that_arming_needs_arms() {
+        let mut bench = Bench::new(&Boot {
+            self_test: SelfTest::default(),
+            identity: Identity::default(),
+            counter: 0,
+            start: 0,
+            tick: 0,
+            sequence: 0,
+            crash: None,
+        });
+        for input in [&[8][..], &[2, 0, 31]] {
+            bench.step(&mut Bytes::new(input));
+        }
+        assert_eq!(bench.drive.state(), State::Armed);
+    }
 }
