@@ -350,7 +350,8 @@ impl Command {
         permit = self.with_comms(permit, inputs.comms_enable_is_on, counters);
         let current_a = inputs.current_a.map(|raw_a| self.motor.current_a(raw_a));
         let monitor_a = inputs.monitor_a.map(|raw_a| raw_a - self.monitor_offset_a);
-        self.check_floating(current_a.zip(monitor_a), rendered.omega_rad_s, counters);
+        let currents_a = current_a.zip(monitor_a);
+        permit = self.floating(permit, currents_a, rendered.omega_rad_s, counters);
         if matches!(permit, Permit::Torque | Permit::Push(_)) {
             let emf_contradicts = self.check_emf(rendered, current_a, is_late);
             permit = self.checked(

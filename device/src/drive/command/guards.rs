@@ -105,14 +105,15 @@ impl Command {
             })
     }
 
-    /// Checks that a floating bridge has no current: a shorted switch and a diode
+    /// Withdraws the permit if a floating bridge has a current: a shorted switch and a diode
     /// would brake. Both sensors have to agree, in its sign, too.
-    pub(super) fn check_floating(
+    pub(super) fn floating(
         &mut self,
+        permit: Permit,
         currents_a: Option<(f32, f32)>,
         omega_rad_s: f32,
         counters: &Counters,
-    ) {
+    ) -> Permit {
         let conducts = currents_a.is_some_and(|(sensor_a, monitor_a)| {
             sensor_a.abs() > FLOATING_A
                 && monitor_a.abs() > FLOATING_A
@@ -124,9 +125,11 @@ impl Command {
         } else {
             0
         };
-        if self.conducting_ticks >= FLOATING_TICKS {
-            self.safety.fail(Fault::CurrentWhileFloating, counters);
+        if self.conducting_ticks < FLOATING_TICKS {
+            return permit;
         }
+        self.safety.fail(Fault::CurrentWhileFloating, counters);
+        Permit::Nothing
     }
 
     /// Output of the coil: driven with the torque only, so that every fault of the motor,

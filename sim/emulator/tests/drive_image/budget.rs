@@ -49,7 +49,7 @@ const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::Modelled,
         share: 56,
-        commit_share: 65,
+        commit_share: 68,
         cold_share: 56,
         render_cycles: 1_310,
     },
