@@ -157,17 +157,7 @@ impl Bench {
             // Normal operation, for this many milliseconds.
             1 => {
                 let count = if bytes.byte() < 128 { usize::MAX } else { 8 };
-                for _ in 0..link_inputs::milliseconds(bytes) {
-                    if self.now_ms >= MOST_MS {
-                        break;
-                    }
-                    self.good_millisecond();
-                    self.read(count);
-                }
-                // What follows finds the drive present.
-                if let Some(block) = self.drive.due_block() {
-                    self.drive_says(&block);
-                }
+                self.run(link_inputs::milliseconds(bytes), count);
             }
             2 | 3 => {
                 let place = usize::from(bytes.byte()) % self.numbers.len();
@@ -223,6 +213,7 @@ impl Bench {
                     self.is_in_frame = false;
                 }
                 16..=63 => self.comms.saved(bytes.byte() < 200),
+                240..=249 => self.arm(),
                 250.. => self.evict_sessions(),
                 count => self.read(usize::from(count)),
             },
@@ -232,6 +223,34 @@ impl Bench {
                     self.link_frame();
                 }
             }
+        }
+    }
+
+    /// Normal operation; the host reads so many bytes in a millisecond.
+    fn run(&mut self, milliseconds: u16, count: usize) {
+        for _ in 0..milliseconds {
+            if self.now_ms >= MOST_MS {
+                break;
+            }
+            self.good_millisecond();
+            self.read(count);
+        }
+        // What follows finds the drive present.
+        if let Some(block) = self.drive.due_block() {
+            self.drive_says(&block);
+        }
+    }
+
+    /// All that arming needs.
+    fn arm(&mut self) {
+        let session = Session(0);
+        for operation in [Operation::Open, Operation::Zero, Operation::Arm] {
+            if let Some(number) = self.numbers.first_mut() {
+                *number += 1;
+                let number = *number;
+                self.request(session, number, operation);
+            }
+            self.run(10, usize::MAX);
         }
     }
 
@@ -461,7 +480,10 @@ impl Bench {
                     let message = body.message().expect("a message");
                     self.told(&message);
                 }
-                Some(Lane::Management) => assert!(ManagementRequest::of(body.payload).is_some()),
+                Some(Lane::Management) => {
+                    let question = ManagementRequest::of(body.payload);
+                    self.drive.manage(question.expect("a question").action);
+                }
                 other => panic!("{other:?} for the drive"),
             }
         }
@@ -517,5 +539,26 @@ impl Bench {
                 self.replied(reply);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without the line the laws about it would hold of themselves.
+    #[test]
+    fn what_arming_needs_turns_the_line_on() {
+        let mut bench = Bench::new(&Boot {
+            identity: Identity {
+                schema: schema::HASH,
+                ..Identity::default()
+            },
+            ..Boot::default()
+        });
+        bench.step(&mut Bytes::new(&[1, 0, 20]));
+        bench.step(&mut Bytes::new(&[7, 240]));
+        assert_eq!(bench.comms.state(), State::Armed);
+        assert!(bench.line_is_on);
     }
 }

@@ -9,7 +9,7 @@ use crepitus_protocol::frame::{self, Frame};
 use crepitus_protocol::link::{
     DriveRefusal, DriveStatus, FromDrive, Heartbeat, Order, Outcome, ToDrive,
 };
-use crepitus_protocol::management::{Answer, Identity, Role};
+use crepitus_protocol::management::{Action, Answer, Identity, Role};
 use crepitus_protocol::pieces::Reassembly;
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, BLOCK_TICKS, Block, BlockFlags};
 use crepitus_protocol::{Lane, Revision, State, ValueError, schema};
@@ -23,6 +23,9 @@ const BLOCK_MS: u8 = 4;
 
 /// Milliseconds between two statuses, if nothing changes.
 const STATUS_MS: u8 = 5;
+
+/// Milliseconds of arming, in which it awaits the line of comms.
+const ARMING_MS: u8 = 3;
 
 /// The drive.
 pub(crate) struct DriveModel {
@@ -46,6 +49,8 @@ pub(crate) struct DriveModel {
     reassembly: (Revision, Reassembly),
     /// The part of its post-mortem record that it was asked for.
     crash_part: Option<u8>,
+    /// While it arms: the number of that command, and milliseconds that are left.
+    arming: Option<(u16, u8)>,
 }
 
 impl DriveModel {
@@ -68,6 +73,7 @@ impl DriveModel {
             latest_tick: 0,
             reassembly: (Revision::NONE, Reassembly::new(0, 0)),
             crash_part: None,
+            arming: None,
         }
     }
 
@@ -92,7 +98,7 @@ impl DriveModel {
             ToDrive::Heartbeat(Heartbeat {
                 lease_left, enable, ..
             }) => {
-                if self.status.state == State::Armed {
+                if matches!(self.status.state, State::Arming | State::Armed) {
                     if !enable {
                         self.status.state = State::Disarmed;
                     } else if lease_left == 0 {
@@ -100,6 +106,7 @@ impl DriveModel {
                         self.status.fault = 2;
                     }
                 }
+                self.abort_arming();
             }
             ToDrive::Commit {
                 revision,
@@ -117,7 +124,12 @@ impl DriveModel {
             }
             ToDrive::Command { number, order, .. } => {
                 match order {
-                    Order::Arm => self.status.state = State::Armed,
+                    // The result comes later.
+                    Order::Arm => {
+                        (self.status.state, self.status.awaits_comms) = (State::Arming, true);
+                        self.arming = Some((number, ARMING_MS));
+                        return;
+                    }
                     Order::Zero => self.status.zeroed = true,
                     Order::ClearFault => {
                         (self.status.state, self.status.fault) = (State::Disarmed, 0);
@@ -133,11 +145,44 @@ impl DriveModel {
         }
     }
 
+    /// A question of the lane that never changes: who it is, is said again.
+    pub(crate) fn manage(&mut self, action: Action) {
+        self.has_sent_hello &= action != Action::Hello;
+    }
+
+    /// Ends arming where the state was left.
+    fn abort_arming(&mut self) {
+        if self.status.state == State::Arming {
+            return;
+        }
+        self.status.awaits_comms = false;
+        if let Some((number, _)) = self.arming.take() {
+            let result = Err(DriveRefusal::Aborted);
+            self.status.last = Some(Outcome { number, result });
+        }
+    }
+
+    /// Arms for a millisecond.
+    fn arm(&mut self) {
+        self.abort_arming();
+        match &mut self.arming {
+            None => {}
+            Some((number, 0)) => {
+                let (number, result) = (*number, Ok(()));
+                self.status.last = Some(Outcome { number, result });
+                (self.status.state, self.status.awaits_comms) = (State::Armed, false);
+                self.arming = None;
+            }
+            Some((_, left_ms)) => *left_ms -= 1,
+        }
+    }
+
     /// The messages of a normal drive in a millisecond: a status after every
     /// change, or else every 5 ms; and as few blocks as keep it from being
     /// silent, since they cost most. It drops the others. While comms is idle it
     /// sends changes only.
     pub(crate) fn millisecond(&mut self, is_idle: bool) -> impl Iterator<Item = Frame> + use<> {
+        self.arm();
         self.block_ms = self.block_ms.saturating_add(1);
         let block = if is_idle { None } else { self.due_block() };
         if block.is_none() {
