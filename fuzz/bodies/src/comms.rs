@@ -81,6 +81,11 @@ pub fn body(data: &[u8]) {
     bench.read(usize::MAX);
 }
 
+/// A session of [`Bench::numbers`].
+fn session_at(place: u32) -> Session {
+    Session(place * 0x1001)
+}
+
 /// Comms, and an oracle that observes both its wires.
 #[expect(
     clippy::struct_excessive_bools,
@@ -152,6 +157,7 @@ impl Bench {
             0 => {
                 let how = bytes.byte();
                 let line = (how & 1 != 0).then_some(how & 2 != 0);
+                self.drive.silent_millisecond();
                 self.tick(line);
             }
             // Normal operation, for this many milliseconds.
@@ -173,7 +179,7 @@ impl Bench {
                     _ => *number += 1,
                 }
                 let number = number.saturating_sub(before);
-                let session = Session(u32::try_from(place).unwrap_or(0) * 0x1001);
+                let session = session_at(u32::try_from(place).expect("a few"));
                 if self.host.nonce(session) == Nonce::NONE {
                     // One number before, so that what follows is newer.
                     self.request(session, number.saturating_sub(1), Operation::Open);
@@ -218,6 +224,7 @@ impl Bench {
                 count => self.read(usize::from(count)),
             },
             _ => {
+                self.drive.silent_millisecond();
                 self.tick(None);
                 for _ in 0..bytes.byte() % 8 {
                     self.link_frame();
@@ -236,7 +243,7 @@ impl Bench {
             self.read(count);
         }
         // What follows finds the drive present.
-        if let Some(block) = self.drive.due_block() {
+        if let Some(block) = self.drive.next_block() {
             self.drive_says(&block);
         }
     }
@@ -264,6 +271,10 @@ impl Bench {
         for number in 0..MOST_SESSIONS {
             self.request(Session(0x10_0000 + number), 1, Operation::Open);
             self.read(usize::MAX);
+        }
+        // They open theirs again.
+        for place in (0..).take(self.numbers.len()) {
+            self.host.forget(session_at(place));
         }
     }
 
@@ -354,8 +365,9 @@ impl Bench {
             let is_newer = last.is_none_or(|last| last.0 != nonce || last.1 < number);
             if nonce == self.host.nonce(session) && is_newer {
                 self.renewed.insert(session.0, (nonce, number));
-                self.lease.renew(session, self.now_ms);
-                self.lease_end_tick = self.lease_end_tick.map(|end| end.max(end_tick));
+                if self.lease.renew(session, self.now_ms) {
+                    self.lease_end_tick = self.lease_end_tick.map(|end| end.max(end_tick));
+                }
             }
             return;
         }
@@ -364,13 +376,14 @@ impl Bench {
         }
         if operation != Operation::Open {
             let before = self.executed.insert(session.0, (nonce, number));
-            assert_ne!(before, Some((nonce, number)), "executed twice");
+            let is_newer = before.is_none_or(|last| last.0 != nonce || last.1 < number);
+            assert!(is_newer, "{number} after {before:?}");
         }
         match operation {
             // Whether or not it is refused.
             Operation::Arm => {
                 let is_first = !self.lease.is_alive(self.now_ms);
-                self.lease.arm(session, self.now_ms);
+                self.lease.arm(session, number, self.now_ms);
                 self.lease_end_tick = match self.lease_end_tick {
                     _ if is_first => Some(end_tick),
                     before => before.map(|end| end.max(end_tick)),
@@ -393,6 +406,9 @@ impl Bench {
         if matches!(reply.answer, Err(Refusal::Unconfirmed | Refusal::NotOpen)) {
             return;
         }
+        if let Err(Refusal::Leased { .. }) = reply.answer {
+            self.lease.refused(reply.session, reply.number);
+        }
         let commit = self.commits.remove(&(reply.session.0, reply.number));
         if let (Some(values), Err(_)) = (commit, reply.answer) {
             self.values.withdraw(&values);
@@ -405,8 +421,10 @@ impl Bench {
         for byte in frame {
             self.comms.link_received(*byte);
         }
-        // Whatever it was.
-        self.block_ms = Some(self.now_ms);
+        if from_comms::is_block(frame) {
+            self.block_ms = Some(self.now_ms);
+            assert!(!self.drive.shows_overcurrent() || self.comms.fault().is_some());
+        }
     }
 
     fn good_millisecond(&mut self) {

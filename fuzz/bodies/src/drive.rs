@@ -14,11 +14,12 @@
 
 use crate::bytes::Bytes;
 use crate::link_inputs;
-use crate::winding::Winding;
+use crate::winding::{CoilWinding, Winding};
 use crepitus_device::Drive;
 use crepitus_device::drive::coil::{CoilOutput, LARGEST_COIL_DUTY};
 use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
+use crepitus_device::drive::prepare::LARGEST_DUTY;
 use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_device::drive::{Boot, Crash};
 use crepitus_device::self_test::SelfTest;
@@ -27,7 +28,7 @@ use crepitus_protocol::crash::{End, Head, PART_WORDS, TICK_WORDS};
 use crepitus_protocol::link::{FromDrive, Heartbeat, Order, STALE_TICKS, ToDrive};
 use crepitus_protocol::management::{Answer, Identity, ManagementRequest, ResetCause};
 use crepitus_protocol::pieces::{self, Piece};
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, SampleFlags};
+use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, SampleFlags};
 use crepitus_protocol::{
     Decoder, DeviceSettings, HEARTBEAT_TICKS, Lane, Revision, State, TICK_US, Values, frame, schema,
 };
@@ -38,7 +39,7 @@ use std::collections::VecDeque;
 const MOST_TICKS: u64 = 4096;
 
 /// The largest torque that limits can be set to, N·m.
-const MOST_NM: f32 = 6.5;
+const MOST_NM: f32 = 4.5;
 
 /// More runs than a status takes to be made, with the answers that go before it.
 const STATUS_RUNS: usize = 60;
@@ -97,7 +98,43 @@ struct Readings {
     is_late: bool,
     is_idle: bool,
     is_slow_good: bool,
+    odd: Option<Odd>,
 }
+
+/// What a sensor delivers beside the truth.
+#[derive(Clone, Copy, PartialEq)]
+enum Odd {
+    SupplyV(f32),
+    MotorC(f32),
+    JointTurns(f32),
+    NoSlowReading,
+    /// Of the second sensor of the current.
+    MonitorOffsetA(f32),
+    IntervalUs(u32),
+    CommsLineIsOn,
+    CoilA(f32),
+    CoilHasTripped,
+}
+
+/// All that there is of each.
+const ODD: [Odd; 16] = [
+    Odd::SupplyV(10.0),
+    Odd::SupplyV(40.0),
+    Odd::SupplyV(f32::NAN),
+    Odd::MotorC(90.0),
+    Odd::MotorC(f32::NAN),
+    Odd::JointTurns(0.5),
+    Odd::JointTurns(f32::NAN),
+    Odd::NoSlowReading,
+    Odd::MonitorOffsetA(1.0),
+    Odd::MonitorOffsetA(-0.3),
+    Odd::IntervalUs(TICK_US - 10),
+    Odd::IntervalUs(TICK_US + 10),
+    Odd::CommsLineIsOn,
+    Odd::CoilA(0.0),
+    Odd::CoilA(2.0),
+    Odd::CoilHasTripped,
+];
 
 impl Readings {
     /// Of a device that is in order.
@@ -112,6 +149,7 @@ impl Readings {
             is_late: false,
             is_idle: true,
             is_slow_good: true,
+            odd: None,
         }
     }
 
@@ -127,7 +165,24 @@ impl Readings {
             is_late: how & 0x40 != 0,
             is_idle: how & 0x80 == 0,
             is_slow_good: how & 0x83 != 0x83,
+            odd: (how & 0x30 == 0x10).then(|| bytes.choice(&ODD)),
         }
+    }
+
+    /// The slow reading of this tick.
+    fn slow(&self, tick: u64, current_a: f32) -> SlowInput {
+        if !self.is_slow_good {
+            return SlowInput::in_turn(tick, current_a, current_a, current_a);
+        }
+        let (mut supply_v, mut motor_c, mut joint_turns) = (24.0, 25.0, 0.0);
+        match self.odd {
+            Some(Odd::SupplyV(odd)) => supply_v = odd,
+            Some(Odd::MotorC(odd)) => motor_c = odd,
+            Some(Odd::JointTurns(odd)) => joint_turns = odd,
+            Some(Odd::NoSlowReading) => return SlowInput::None,
+            _ => {}
+        }
+        SlowInput::in_turn(tick, supply_v, motor_c, joint_turns)
     }
 }
 
@@ -135,6 +190,7 @@ impl Readings {
 struct Bench {
     drive: Drive,
     winding: Winding,
+    coil: CoilWinding,
     counter: u32,
     line_is_on: bool,
     ticks: u64,
@@ -155,6 +211,8 @@ struct Bench {
     states: VecDeque<(u64, State, Revision)>,
     received: u64,
     first_tick: u64,
+    /// In which ticks there was torque.
+    energised: Vec<bool>,
     sequence: u16,
     /// Words of its record of a crash.
     crash: Vec<u32>,
@@ -171,6 +229,7 @@ impl Bench {
             crash: head.chain(ticks.copied()).collect(),
             drive: Drive::new(boot).expect("the defaults are allowed"),
             winding: Winding::default(),
+            coil: CoilWinding::default(),
             counter: boot.counter,
             line_is_on: false,
             ticks: 0,
@@ -186,6 +245,7 @@ impl Bench {
             states: VecDeque::new(),
             received: 0,
             first_tick: boot.tick,
+            energised: Vec::new(),
             sequence: boot.sequence,
         }
     }
@@ -237,15 +297,16 @@ impl Bench {
             4 => {
                 let chirp = Order::PlayChirp(link_inputs::chirp(bytes));
                 let order = bytes.choice(&[Order::Arm, Order::Zero, Order::ClearFault, chirp]);
-                let number = bytes.byte();
-                self.number = if number < 192 {
-                    self.number.wrapping_add(1)
+                let jump = bytes.byte();
+                let number = if jump < 192 {
+                    self.number = self.number.wrapping_add(1);
+                    self.number
                 } else {
-                    u16::from(number) << 8
+                    u16::from(jump) << 8
                 };
                 self.send(&ToDrive::Command {
                     seen_tick: link_inputs::near(bytes, now),
-                    number: self.number,
+                    number,
                     order,
                 });
             }
@@ -262,7 +323,10 @@ impl Bench {
                 let frame = frame::encode_bytes(Lane::Management, &question.bytes());
                 self.receive(&frame.expect("a short frame"));
             }
-            7 => self.read(usize::from(bytes.byte() % 8)),
+            7 => match bytes.byte() {
+                runs @ 0..=127 => self.read(usize::from(runs % 8)),
+                part => self.send(&ToDrive::ReadCrash { part: part % 32 }),
+            },
             // All that arming needs.
             8 => {
                 let revision = Revision(1);
@@ -276,7 +340,7 @@ impl Bench {
                     }
                 }
                 self.heartbeat(5_000);
-                for order in [Order::Zero, Order::Arm] {
+                for order in [Order::ClearFault, Order::Zero, Order::Arm] {
                     self.number = self.number.wrapping_add(1);
                     self.send(&ToDrive::Command {
                         seen_tick: self.drive.next_tick(),
@@ -397,21 +461,26 @@ impl Bench {
             self.drive.render_torque(self.counter);
         }
         let current_a = readings.current_a.unwrap_or(self.winding.current_a());
+        let (mut monitor_a, mut interval_us, mut coil_a) =
+            (current_a, TICK_US, self.coil.current_a());
+        match readings.odd {
+            Some(Odd::MonitorOffsetA(odd)) => monitor_a += odd,
+            Some(Odd::IntervalUs(odd)) => interval_us = odd,
+            Some(Odd::CoilA(odd)) => coil_a = odd,
+            _ => {}
+        }
         let inputs = Inputs {
             current_a: readings.has_current.then_some(current_a),
-            monitor_a: readings.has_current.then_some(current_a),
-            interval_us: TICK_US,
+            monitor_a: readings.has_current.then_some(monitor_a),
+            interval_us,
             enable_is_on: readings.line.unwrap_or(self.line_is_on),
-            comms_enable_is_on: !readings.comms_line_is_off
-                && (before == State::Armed || self.drive.awaits_comms()),
+            comms_enable_is_on: readings.odd == Some(Odd::CommsLineIsOn)
+                || !readings.comms_line_is_off
+                    && (before == State::Armed || self.drive.awaits_comms()),
             has_tripped: readings.has_tripped,
-            slow: if readings.is_slow_good {
-                SlowInput::in_turn(tick, 24.0, 25.0, 0.0)
-            } else {
-                SlowInput::in_turn(tick, current_a, current_a, current_a)
-            },
-            coil_a: readings.has_current.then_some(current_a),
-            coil_has_tripped: readings.has_tripped,
+            slow: readings.slow(tick, current_a),
+            coil_a: readings.has_current.then_some(coil_a),
+            coil_has_tripped: readings.odd == Some(Odd::CoilHasTripped),
         };
         let coil_fault = self.drive.coil_fault();
         let outputs = self.drive.command_motor(&inputs);
@@ -425,6 +494,7 @@ impl Bench {
         if readings.is_idle {
             self.drive.prepare();
         }
+        self.coil.tick(outputs.coil);
         self.line_is_on = outputs.enable;
         // Each line closes the bridge's gate by itself.
         let powered = outputs.enable && inputs.enable_is_on && inputs.comms_enable_is_on;
@@ -442,6 +512,8 @@ impl Bench {
 
     fn hold(&mut self, tick: u64, before: State, inputs: &Inputs, outputs: &Outputs) {
         let state = self.drive.state();
+        let is_driven = matches!(outputs.bridge, Bridge::Driven(_));
+        self.energised.push(state == State::Armed && is_driven);
         assert!(before != State::Faulted || state == State::Faulted);
         assert!(before != State::Disarmed || !matches!(state, State::Arming | State::Armed));
         assert_eq!(self.drive.fault().is_some(), state == State::Faulted);
@@ -453,11 +525,15 @@ impl Bench {
             return;
         };
         assert!(volts.is_finite() && live);
-        // What arming proves is that no current flows with a line off.
-        assert!(inputs.comms_enable_is_on || state == State::Arming);
-        // Only arming drives through a gate that has to be closed.
-        assert!(outputs.enable || state == State::Arming);
-        let is_proof = state == State::Arming && volts.abs() <= 24.0;
+        let most_duty = LARGEST_DUTY * (1.0 + f32::EPSILON);
+        assert!(outputs.duty.abs() <= most_duty, "{outputs:?}");
+        // Arming proves that no current flows with either line off.
+        let arming = state == State::Arming;
+        let proves_comms = arming && !self.drive.awaits_comms();
+        let proves_drive = arming && self.drive.awaits_comms() && !outputs.enable;
+        assert!(inputs.comms_enable_is_on || proves_comms);
+        assert!(outputs.enable || proves_drive);
+        let is_proof = proves_comms || proves_drive;
         assert!(is_proof || !inputs.has_tripped && inputs.current_a.is_some());
         let heard = self.comms_start.expect("a heartbeat");
         assert!(tick - heard < HEARTBEAT_TICKS, "{} ticks", tick - heard);
@@ -538,6 +614,7 @@ impl Bench {
                 Some(Lane::Telemetry) => {
                     let block = body.message().expect("a block");
                     self.received += BLOCK_SAMPLES as u64;
+                    self.energised(&block);
                     let end = self.received + u64::from(block_dropped(&block));
                     assert_eq!(block.end_tick() - self.first_tick, end, "sample accounting");
                     let blocks = (block.first_tick - self.first_tick) / BLOCK_SAMPLES as u64;
@@ -550,10 +627,20 @@ impl Bench {
         }
         assert_eq!(found, 1, "frames in a frame");
     }
+
+    /// The samples say in which ticks there was torque.
+    fn energised(&self, block: &Block) {
+        let first = usize::try_from(block.first_tick - self.first_tick).expect("a few");
+        let ticks = self.energised.get(first..).unwrap_or_default();
+        for (sample, is_energised) in block.samples.iter().zip(ticks) {
+            let says = sample.flags.has(SampleFlags::ENERGISED);
+            assert_eq!(says, *is_energised, "{sample:?}");
+        }
+    }
 }
 
 /// What a block says was dropped; its torque is held to its law on the way.
-fn block_dropped(block: &crepitus_protocol::telemetry::Block) -> u32 {
+fn block_dropped(block: &Block) -> u32 {
     for sample in &block.samples {
         let is_energised = sample.flags.has(SampleFlags::ENERGISED);
         assert!(sample.torque_nm.abs() <= MOST_NM, "{sample:?}");

@@ -11,8 +11,10 @@ use crepitus_protocol::link::{
 };
 use crepitus_protocol::management::{Action, Answer, Identity, Role};
 use crepitus_protocol::pieces::Reassembly;
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, BLOCK_TICKS, Block, BlockFlags};
-use crepitus_protocol::{Lane, Revision, State, ValueError, schema};
+use crepitus_protocol::telemetry::{
+    BLOCK_SAMPLES, BLOCK_TICKS, Block, BlockFlags, NO_CURRENT, Sample, SampleFlags,
+};
+use crepitus_protocol::{Decoder, Lane, Revision, State, ValueError, schema};
 use std::collections::VecDeque;
 
 /// Ticks stay within two months, the range of a drive.
@@ -23,6 +25,9 @@ const BLOCK_MS: u8 = 4;
 
 /// Milliseconds between two statuses, if nothing changes.
 const STATUS_MS: u8 = 5;
+
+/// A current that no drive commands, mA.
+const OVERCURRENT_MA: i16 = 2_500;
 
 /// Milliseconds of arming, in which it awaits the line of comms.
 const ARMING_MS: u8 = 3;
@@ -49,6 +54,8 @@ pub(crate) struct DriveModel {
     reassembly: (Revision, Reassembly),
     /// The part of its post-mortem record that it was asked for.
     crash_part: Option<u8>,
+    /// A block was sent before its millisecond.
+    is_ahead: bool,
     /// While it arms: the number of that command, and milliseconds that are left.
     arming: Option<(u16, u8)>,
 }
@@ -73,8 +80,18 @@ impl DriveModel {
             latest_tick: 0,
             reassembly: (Revision::NONE, Reassembly::new(0, 0)),
             crash_part: None,
+            is_ahead: false,
             arming: None,
         }
+    }
+
+    /// Whether the last block that it sent has a current that no drive commands, and says that
+    /// there is torque.
+    pub(crate) fn shows_overcurrent(&self) -> bool {
+        self.blocks.back().is_some_and(|block| {
+            let is_live = matches!(block.flags.state(), State::Arming | State::Armed);
+            is_live && block.samples.iter().all(|s| s.current_ma == OVERCURRENT_MA)
+        })
     }
 
     /// Whether it has rejected a commit since the last call.
@@ -96,8 +113,12 @@ impl DriveModel {
     pub(crate) fn receive(&mut self, message: &ToDrive) {
         match *message {
             ToDrive::Heartbeat(Heartbeat {
-                lease_left, enable, ..
+                lease_left,
+                enable,
+                start,
+                ..
             }) => {
+                self.status.comms_start = Some(start);
                 if matches!(self.status.state, State::Arming | State::Armed) {
                     if !enable {
                         self.status.state = State::Disarmed;
@@ -186,8 +207,7 @@ impl DriveModel {
         self.block_ms = self.block_ms.saturating_add(1);
         let block = if is_idle { None } else { self.due_block() };
         if block.is_none() {
-            self.advance();
-            self.dropped = self.dropped.wrapping_add(BLOCK_TICKS);
+            self.drop_block();
         }
         self.reported_ms = self.reported_ms.saturating_add(1);
         self.reported.tick = self.status.tick;
@@ -199,8 +219,30 @@ impl DriveModel {
         [block, status, hello, crash_part].into_iter().flatten()
     }
 
+    /// A millisecond of which comms hears nothing.
+    pub(crate) fn silent_millisecond(&mut self) {
+        self.arm();
+        self.drop_block();
+    }
+
+    /// A block's time passes without one, unless it was sent before.
+    fn drop_block(&mut self) {
+        if !std::mem::take(&mut self.is_ahead) {
+            self.advance();
+            self.dropped = self.dropped.wrapping_add(BLOCK_TICKS);
+        }
+    }
+
+    /// The block of the next millisecond, unless the last one was sent less than [`BLOCK_MS`]
+    /// ago.
+    pub(crate) fn next_block(&mut self) -> Option<Frame> {
+        let block = self.due_block();
+        self.is_ahead |= block.is_some();
+        block
+    }
+
     /// A block, unless the last one was sent less than [`BLOCK_MS`] ago.
-    pub(crate) fn due_block(&mut self) -> Option<Frame> {
+    fn due_block(&mut self) -> Option<Frame> {
         (self.block_ms >= BLOCK_MS).then(|| self.block())
     }
 
@@ -210,6 +252,17 @@ impl DriveModel {
     }
 
     fn block(&mut self) -> Frame {
+        let block = self.taken(Sample::default());
+        block_frames::encode(&block)
+    }
+
+    /// A block of such samples.
+    fn block_of(&mut self, sample: Sample) -> Frame {
+        let block = self.taken(sample);
+        frame::encode(Lane::Telemetry, &block).expect("a block fits")
+    }
+
+    fn taken(&mut self, sample: Sample) -> Block {
         let status = &self.status;
         let block = Block {
             sequence: self.sequence,
@@ -217,6 +270,7 @@ impl DriveModel {
             revision: status.revision,
             dropped: self.dropped,
             flags: BlockFlags::new(status.state, status.zeroed, status.start),
+            samples: [sample; BLOCK_SAMPLES],
             ..Block::default()
         };
         self.block_ms = 0;
@@ -224,13 +278,14 @@ impl DriveModel {
         self.blocks.push_back(block);
         self.sequence = self.sequence.wrapping_add(1);
         self.advance();
-        block_frames::encode(&block)
+        block
     }
 
     /// Takes a block that comms has forwarded, in order: as it was sent, but for
     /// the samples dropped, which comms counts itself.
     pub(crate) fn take_block(&mut self, frame: &[u8]) -> Block {
-        let block = block_frames::decode(frame).expect("a block of zeros");
+        let block = block_frames::decode(frame).or_else(|| decoded(frame));
+        let block = block.expect("a block");
         let (number, dropped) = (block.sequence, block.dropped);
         let place = self.blocks.iter().position(|sent| sent.sequence == number);
         let mut sent = self.blocks.drain(..=place.expect("a block of the drive"));
@@ -252,8 +307,13 @@ impl DriveModel {
             // Samples are lost on the link, or were dropped before it.
             0 => {
                 self.status.tick += BLOCK_SAMPLES as u64 * u64::from(bytes.byte());
-                self.dropped = u32::from(bytes.byte()) * BLOCK_TICKS;
-                self.block()
+                let dropped = bytes.byte();
+                self.dropped = u32::from(dropped) * BLOCK_TICKS;
+                if dropped < 192 {
+                    self.block()
+                } else {
+                    self.block_of(sample(bytes))
+                }
             }
             // It has restarted.
             1 => {
@@ -317,6 +377,33 @@ impl DriveModel {
             _ => hello(if bytes.byte() < 128 { schema::HASH } else { 0 }),
         }
     }
+}
+
+/// A sample that is in order, or is not.
+fn sample(bytes: &mut Bytes<'_>) -> Sample {
+    const TORQUES_NM: [f32; 4] = [0.0, 1.0, 9.0, f32::INFINITY];
+    let flags = [
+        SampleFlags::ENERGISED,
+        SampleFlags::ENERGISED | SampleFlags::LOST,
+        SampleFlags::LOST,
+        0,
+    ];
+    Sample {
+        count: bytes.i32(),
+        current_ma: bytes.choice(&[0, OVERCURRENT_MA, -300, NO_CURRENT]),
+        torque_nm: bytes.choice(&TORQUES_NM),
+        model_torque_nm: bytes.choice(&TORQUES_NM),
+        flags: SampleFlags(bytes.choice(&flags)),
+    }
+}
+
+/// A block as the product's own decoder reads it.
+fn decoded(frame: &[u8]) -> Option<Block> {
+    let mut decoder = Decoder::new();
+    let body = frame
+        .iter()
+        .find_map(|byte| decoder.push(*byte)?.ok()?.message());
+    body
 }
 
 fn hello(schema: u64) -> Frame {

@@ -61,13 +61,18 @@ pub fn body(data: &[u8]) {
 /// Bytes as they come, then a good frame.
 fn stream(noise: &[u8], golden: &[u8]) {
     let mut decoder = Decoder::new();
-    let (mut runs, mut found, mut is_open) = (0, 0, false);
+    let (mut runs, mut found, mut run) = (0, 0, Vec::new());
     for byte in noise {
-        runs += u32::from(*byte == 0 && is_open);
-        is_open = *byte != 0;
         if let Some(Ok(body)) = decoder.push(*byte) {
             found += 1;
+            assert!(is_checked(&run, &body), "{run:02x?} is no frame");
             understood(&body);
+        }
+        if *byte != 0 {
+            run.push(*byte);
+        } else {
+            runs += u32::from(!run.is_empty());
+            run.clear();
         }
     }
     assert_eq!(runs, found + decoder.discarded().total());
@@ -82,6 +87,29 @@ fn stream(noise: &[u8], golden: &[u8]) {
     let again = frame::encode_body(&bodies[0]).expect("it was a frame");
     assert_eq!(again, golden);
     assert_eq!(decoder.discarded(), discarded);
+}
+
+/// Whether the run of bytes is that body with its checksum, by a reader of our own.
+fn is_checked(run: &[u8], body: &Body<'_>) -> bool {
+    let mut plain = Vec::new();
+    let mut rest = run;
+    while let Some((code, next)) = rest.split_first() {
+        let count = usize::from(*code) - 1;
+        if next.len() < count {
+            return false;
+        }
+        let (bytes, after) = next.split_at(count);
+        plain.extend(bytes);
+        if *code < u8::MAX && !after.is_empty() {
+            plain.push(0);
+        }
+        rest = after;
+    }
+    let Some((bytes, checksum)) = plain.split_last_chunk() else {
+        return false;
+    };
+    CRC.checksum(bytes) == u32::from_le_bytes(*checksum)
+        && bytes == [&[body.lane, body.tag][..], body.payload].concat()
 }
 
 /// A body that was found.

@@ -1,5 +1,6 @@
 //! A motor's winding: enough of a motor for a current loop to be content.
 
+use crepitus_device::drive::coil::CoilOutput;
 use crepitus_device::drive::motor::Bridge;
 
 /// Resistance, Ω; V·s/rad at the joint; a tick over the inductance, 1/Ω; angle
@@ -30,5 +31,28 @@ impl Winding {
                 self.current_a += TICK_PER_INDUCTANCE * over_v;
             }
         }
+    }
+}
+
+/// Current of the coil at all of its supply, A, by the default parameters: 5 V over 1.8 Ω.
+const COIL_A: f32 = 5.0 / 1.8;
+
+/// The coil of the vibration actuator: what its duty drives through its resistance.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct CoilWinding {
+    current_a: f32,
+}
+
+impl CoilWinding {
+    pub(crate) fn current_a(self) -> f32 {
+        self.current_a
+    }
+
+    /// Runs one tick.
+    pub(crate) fn tick(&mut self, output: CoilOutput) {
+        self.current_a = match output {
+            CoilOutput::Asleep => 0.0,
+            CoilOutput::Driven(duty) => duty * COIL_A,
+        };
     }
 }

@@ -4,7 +4,7 @@
 use crate::chain::MOST_RESTARTS;
 use crate::chain::samples::{Produced, Samples};
 use crate::chain::wire::Wire;
-use crate::winding::Winding;
+use crate::winding::{CoilWinding, Winding};
 use crepitus_device::comms::{self, Comms};
 use crepitus_device::drive::command::Inputs;
 use crepitus_device::drive::motor::Bridge;
@@ -67,6 +67,7 @@ pub(super) struct Device {
     drive_line: bool,
     bridge: Bridge,
     winding: Winding,
+    coil: CoilWinding,
     counter: u32,
     saved: Option<(Revision, Values)>,
     pub(super) samples: Samples,
@@ -101,6 +102,7 @@ impl Device {
             drive_line: false,
             bridge: Bridge::Float,
             winding: Winding::default(),
+            coil: CoilWinding::default(),
             counter: 0,
             saved,
             samples: Samples::default(),
@@ -192,9 +194,10 @@ impl Device {
             comms_enable_is_on: self.comms_line,
             has_tripped: readings.has_tripped,
             slow: SlowInput::in_turn(self.tick, 24.0, 25.0, 0.0),
-            coil_a: readings.has_current.then_some(current_a),
+            coil_a: readings.has_current.then_some(self.coil.current_a()),
             coil_has_tripped: readings.has_tripped,
         });
+        self.coil.tick(outputs.coil);
         (self.drive_line, self.bridge) = (outputs.enable, outputs.bridge);
         let is_driven = matches!(outputs.bridge, Bridge::Driven(_));
         let is_energised = self.drive.state() == State::Armed && is_driven;

@@ -1,7 +1,7 @@
 //! Actions of the hosts, and the checks after each tick.
 
 use crate::chain::device::{COMMS_TICKS, Readings};
-use crate::chain::{Chain, MOST_RESTARTS, MOST_TICKS, NUMBERS, SESSIONS, Sent};
+use crate::chain::{Chain, MOST_RESTARTS, NUMBERS, SESSIONS, Sent};
 use crate::from_comms::FromComms;
 use crepitus_device::usb_port::HostBytes;
 use crepitus_protocol::counters::CommsCounter;
@@ -67,8 +67,7 @@ impl Chain {
         match request.operation {
             // Whether or not it is refused.
             Operation::Arm => {
-                self.lease.arm(session, now);
-                self.last_renewal = Some(now);
+                self.lease.arm(session, request.number, now);
             }
             Operation::Disarm => {
                 self.lease.disarm(session);
@@ -117,11 +116,8 @@ impl Chain {
 
     fn renewed(&mut self, request: &Request) {
         let now = self.device.tick;
-        if request.nonce == self.host.nonce(request.session)
-            && self.host.is_open(request.session)
-            && self.lease.renew(request.session, now)
-        {
-            self.last_renewal = Some(now);
+        if request.nonce == self.host.nonce(request.session) && self.host.is_open(request.session) {
+            self.lease.renew(request.session, now);
         }
     }
 
@@ -157,7 +153,7 @@ impl Chain {
 
     pub(super) fn run(&mut self, milliseconds: u16, readings: Readings) {
         for _ in 0..u64::from(milliseconds) * COMMS_TICKS {
-            if self.device.tick < MOST_TICKS {
+            if self.device.tick < self.most_ticks {
                 self.tick(readings);
             }
         }
@@ -177,7 +173,7 @@ impl Chain {
 
     fn check_torque(&mut self, now: u64) {
         if self.device.commands_torque() {
-            let renewed = self.last_renewal.expect("torque before arming");
+            let renewed = self.lease.last().expect("torque before arming");
             assert!(now - renewed < LEASE_TICKS - 1, "the lease has ended");
         }
         if self.device.is_driven() {
@@ -241,6 +237,7 @@ impl Chain {
             Err(Refusal::NotOpen) => self.host.forget(reply.session),
             // It may still come into effect.
             Err(Refusal::Unconfirmed) => {}
+            Err(Refusal::Leased { .. }) => self.lease.refused(reply.session, reply.number),
             Err(_) => {
                 if let Some(values) = self.commits.remove(&key) {
                     self.values.withdraw(&values);
