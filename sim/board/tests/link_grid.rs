@@ -98,6 +98,10 @@ fn whatever_the_wires_do_nothing_goes_wrong_and_everything_comes_back() {
     print("all        ", &total);
     println!("in {:.1} s", begun.elapsed().as_secs_f64());
     assert!(total.cells >= 200);
+    // Faults of the wire reach all that the grid is to show.
+    assert!(total.commits > 0 && total.refused > 0 && total.faults > 0);
+    assert!(total.stale > 0 && total.lost > 0);
+    assert!(total.longest[0] >= 90 && total.longest[1] >= 4_900);
 }
 
 fn print(name: &str, sum: &Sum) {

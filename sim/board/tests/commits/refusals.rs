@@ -38,7 +38,9 @@ fn every_value_outside_its_range_is_refused_by_its_id_armed_or_not() {
                 Kind::Choice(choice) => bad.extend([0.5, [2.0, 3.0][choice.names.len() - 2]]),
             }
             for value in bad {
-                if parameter.allows(value) {
+                if let Kind::Number(spec) = parameter.kind
+                    && (spec.min..=spec.max).contains(&value)
+                {
                     continue;
                 }
                 let expected = Refusal::Values(ValueError::OutOfRange { id: parameter.id });

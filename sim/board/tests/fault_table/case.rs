@@ -118,14 +118,14 @@ fn pulls(host: &Host) -> bool {
     host.device.board().leg().winding_current_a().abs() > 0.28
 }
 
-/// A heartbeat has just been heard.
+/// A heartbeat has just been heard, and the leg is being flexed.
 pub(crate) fn heartbeat(host: &Host) -> bool {
-    changes(host, host.drive_count(DriveCounter::Heartbeats))
+    changes(host, host.drive_count(DriveCounter::Heartbeats)) && moves(host)
 }
 
-/// The lease has just been renewed.
+/// The lease has just been renewed, and the leg is being flexed.
 pub(crate) fn renewal(host: &Host) -> bool {
-    changes(host, host.comms_count(CommsCounter::Renewals))
+    changes(host, host.comms_count(CommsCounter::Renewals)) && moves(host)
 }
 
 /// Whether this is another number than a tick before.

@@ -25,7 +25,7 @@ use provocation::{Provocation, provocation};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::thread;
-use trial::{PUSH_TICKS, Times};
+use trial::Times;
 
 /// The page of these tables.
 const PAGE: Page = Page {
@@ -90,15 +90,19 @@ fn every_fault_is_noticed_in_time_latched_and_cleared() {
                     rows.push(row);
                     // Where the table has no time the bridge floats already,
                     // or with the cause.
-                    let most = match case.moment {
-                        // The push at arming is what finds it.
-                        Moment::Arming => PUSH_TICKS,
-                        _ => case.lag + u64::from(spec.within_ticks.unwrap_or(AT_ONCE_TICKS)),
-                    };
+                    let most = case.lag + u64::from(spec.within_ticks.unwrap_or(AT_ONCE_TICKS));
                     if times.floats > most {
                         wrong.push(format!(
                             "{}, {}: driven for {} ticks, the table says {most}",
                             spec.name, case.name, times.floats
+                        ));
+                    }
+                    // A bridge that floats anyway says nothing of the time.
+                    let is_late = spec.within_ticks.is_some() && times.latched > most + 1;
+                    if case.moment == Moment::Disarmed && is_late {
+                        wrong.push(format!(
+                            "{}, {}: latched after {} ticks, the table says {most}",
+                            spec.name, case.name, times.latched
                         ));
                     }
                 }

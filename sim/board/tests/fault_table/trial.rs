@@ -15,9 +15,6 @@ const AFTER_TICKS: u64 = 2_000;
 /// seconds.
 const MOST_TICKS: u64 = 60_000;
 
-/// The push that shows at arming which way the shaft turns, ticks.
-pub(crate) const PUSH_TICKS: u64 = 321;
-
 /// What was measured: the worst of all phases.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Times {
@@ -60,6 +57,8 @@ fn ready(case: &Case, phase: u64) -> Host {
     assert_eq!(host.ask_patiently(Operation::Zero), Ok(Answer::Done));
     if case.moment == Moment::Armed {
         host.arm();
+        // What has just happened is seen by what was before.
+        (case.settled)(&host);
         let settled = (0..40_000).any(|_| {
             host.tick();
             (case.settled)(&host)
@@ -164,13 +163,16 @@ impl Trial<'_> {
         self.host.renew_every = Some(1_000);
         let request = self.host.request(Operation::Arm);
         self.host.say(&request);
-        let (mut driven, mut since) = (None, 0);
-        let mut floats = 0;
-        while !self.is_latched() {
+        let (mut driven, mut latched) = (None, None);
+        let (mut floats, mut since) = (0, 0);
+        while latched.is_none_or(|latched| since < latched + AFTER_TICKS) {
             if self.tick(since) {
                 floats = since + 2 - *driven.get_or_insert(since);
             }
             since += 1;
+            if latched.is_none() && self.is_latched() {
+                latched = Some(since);
+            }
             assert!(since < MOST_TICKS, "{}: not noticed", self.context);
         }
         let answer = self.host.answer_to(&request).expect("an answer");
@@ -185,7 +187,7 @@ impl Trial<'_> {
             self.context
         );
         assert!(!self.host.device.board().is_driven(), "{}", self.context);
-        self.times(floats, since)
+        self.times(floats, latched.unwrap_or(since))
     }
 
     /// The fault stays, whatever the host asks for.
