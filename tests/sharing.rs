@@ -508,6 +508,7 @@ fn record_is_killed_at_any_instant() {
     );
     assert!(observed.longest_without_renewal <= 5_001, "{observed:?}");
     assert!(observed.driven_ticks > 0 && cut > 0 && complete > 0);
+    assert!(expired > 0 || !is_long, "no lease was ever left to expire");
     assert!(others.len() <= kills / 4, "only SIGKILL leaves any");
 }
 

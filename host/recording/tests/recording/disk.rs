@@ -100,7 +100,7 @@ fn whatever_write_fails_what_was_written_before_is_read() {
             }
             std::fs::write(&path, &written).unwrap();
             let recording = crate::support::open(&path).unwrap();
-            assert!(!recording.is_complete() || code == EIO || at + 1 == calls);
+            assert!(!recording.is_complete() || at + 1 == calls);
             let kept = rows(&recording);
             assert_eq!(kept, all[..kept.len()]);
             assert!(kept.len() >= before);

@@ -38,10 +38,11 @@ fn a_dead_sensor_without_a_comparator_ends_by_the_speed() {
         most_nm = most_nm.max(leg.motor_nm().abs());
         assert!(ticks < 5_000, "not noticed");
     }
+    let fault = host.device.board().drive().fault();
     println!(
-        "dead sensor and comparator: {:?} after {ticks} ticks, {most_a:.2} A, {most_nm:.1} N·m",
-        host.device.board().drive().fault()
+        "dead sensor and comparator: {fault:?} after {ticks} ticks, {most_a:.2} A, {most_nm:.1} N·m"
     );
+    assert_eq!(fault, Some(Fault::SpeedMismatch));
     assert!(!host.device.board().is_driven());
 }
 

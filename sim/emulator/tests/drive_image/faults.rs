@@ -119,10 +119,11 @@ fn a_stopped_timer_of_the_model_and_a_link_that_is_cut() {
     };
     // One result in five is late, which is not too many.
     host.board.faults.down_is_cut = true;
+    let mut off = None;
     for halves in 0..=limit(Fault::CommsSilent) {
         if !host.board.drive_is_on() {
-            println!("timer of the model stopping, link cut: off after {halves} half ticks");
-            return;
+            off = Some(halves);
+            break;
         }
         if halves % 40 == 0 {
             stop(&mut host, RENDER_CONTROL);
@@ -133,7 +134,11 @@ fn a_stopped_timer_of_the_model_and_a_link_that_is_cut() {
         }
         host.board.half(None);
     }
-    panic!("still on");
+    let halves = off.expect("off");
+    println!("timer of the model stopping, link cut: off after {halves} half ticks");
+    host.board.faults.down_is_cut = false;
+    host.run(200);
+    assert_eq!(drive_fault(&mut host), Fault::CommsSilent.code());
 }
 
 #[test]
