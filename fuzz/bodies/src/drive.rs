@@ -327,28 +327,7 @@ impl Bench {
                 runs @ 0..=127 => self.read(usize::from(runs % 8)),
                 part => self.send(&ToDrive::ReadCrash { part: part % 32 }),
             },
-            // All that arming needs.
-            8 => {
-                let revision = Revision(1);
-                self.commit(revision, &Values::default());
-                // It prepares values between its ticks, some of them in each.
-                for _ in 0..MOST_PREPARING_MS {
-                    self.heartbeat(5_000);
-                    self.run(20, &Readings::good());
-                    if self.drive.revision() == revision {
-                        break;
-                    }
-                }
-                self.heartbeat(5_000);
-                for order in [Order::ClearFault, Order::Zero, Order::Arm] {
-                    self.number = self.number.wrapping_add(1);
-                    self.send(&ToDrive::Command {
-                        seen_tick: self.drive.next_tick(),
-                        number: self.number,
-                        order,
-                    });
-                }
-            }
+            8 => self.arm(),
             // Heartbeats of a lease that is not renewed.
             _ => {
                 let seen_tick = self.drive.next_tick();
@@ -360,6 +339,29 @@ impl Bench {
                     self.run(20, &Readings::good());
                 }
             }
+        }
+    }
+
+    /// All that arming needs.
+    fn arm(&mut self) {
+        let revision = Revision(1);
+        self.commit(revision, &Values::default());
+        // It prepares values between its ticks, some of them in each.
+        for _ in 0..MOST_PREPARING_MS {
+            self.heartbeat(5_000);
+            self.run(20, &Readings::good());
+            if self.drive.revision() == revision {
+                break;
+            }
+        }
+        self.heartbeat(5_000);
+        for order in [Order::ClearFault, Order::Zero, Order::Arm] {
+            self.number = self.number.wrapping_add(1);
+            self.send(&ToDrive::Command {
+                seen_tick: self.drive.next_tick(),
+                number: self.number,
+                order,
+            });
         }
     }
 

@@ -33,6 +33,7 @@ const OVERCURRENT_MA: i16 = 2_500;
 const ARMING_MS: u8 = 3;
 
 /// The drive.
+#[expect(clippy::struct_excessive_bools, reason = "each is a fact by itself")]
 pub(crate) struct DriveModel {
     status: DriveStatus,
     /// The last status, and milliseconds since.
@@ -400,10 +401,9 @@ fn sample(bytes: &mut Bytes<'_>) -> Sample {
 /// A block as the product's own decoder reads it.
 fn decoded(frame: &[u8]) -> Option<Block> {
     let mut decoder = Decoder::new();
-    let body = frame
+    frame
         .iter()
-        .find_map(|byte| decoder.push(*byte)?.ok()?.message());
-    body
+        .find_map(|byte| decoder.push(*byte)?.ok()?.message())
 }
 
 fn hello(schema: u64) -> Frame {
