@@ -272,9 +272,10 @@ impl Bench {
             self.request(Session(0x10_0000 + number), 1, Operation::Open);
             self.read(usize::MAX);
         }
-        // They open theirs again.
-        for place in (0..).take(self.numbers.len()) {
+        // They open theirs again, with numbers of their own.
+        for (place, number) in (0..).zip(&mut self.numbers) {
             self.host.forget(session_at(place));
+            *number += 1;
         }
     }
 

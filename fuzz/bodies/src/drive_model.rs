@@ -87,11 +87,12 @@ impl DriveModel {
     }
 
     /// Whether the last block that it sent has a current that no drive commands, and says that
-    /// there is torque.
+    /// there is torque; not one that is older for comms, after a restart that it cannot see.
     pub(crate) fn shows_overcurrent(&self) -> bool {
         self.blocks.back().is_some_and(|block| {
             let is_live = matches!(block.flags.state(), State::Arming | State::Armed);
-            is_live && block.samples.iter().all(|s| s.current_ma == OVERCURRENT_MA)
+            let is_over = |sample: &Sample| sample.current_ma == OVERCURRENT_MA;
+            is_live && block.end_tick() == self.latest_tick && block.samples.iter().all(is_over)
         })
     }
 

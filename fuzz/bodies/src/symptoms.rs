@@ -6,6 +6,7 @@
 //! - while the leg rests, no torque of a play grows; after a commit only to what motion
 //!   has earned since it was switched on, within the slew limit;
 //! - what gives energy gives no more than its tank holds;
+//! - while the motor is not driven there is no torque;
 //! - words are within the tick and in order for each symptom, and bounded in number.
 
 use crate::bytes::Bytes;
@@ -65,8 +66,13 @@ fn run<F: Real>(mut bytes: Bytes<'_>, sight: Sight) {
     }
     let mut shaft = Shaft::default();
     while !bytes.is_empty() && knee.ticks < MOST_TICKS {
-        if bytes.byte().is_multiple_of(8) {
+        let what = bytes.byte();
+        if what.is_multiple_of(8) {
             knee.commit(&settings(&mut bytes));
+        }
+        // The motor is let go, or driven again.
+        if what % 64 == 33 {
+            knee.is_driven = !knee.is_driven;
         }
         for step in next_samples(&mut bytes, &mut shaft, STEP_S) {
             knee.tick(step.as_ref());
@@ -180,6 +186,7 @@ struct Knee<F: Real> {
     timing: Timing,
     settings: EffectSettings,
     angle_rad: f64,
+    is_driven: bool,
     ticks: usize,
     bounds: [Bounds; SYMPTOMS],
     /// What each may show, and what it shows, N·m.
@@ -211,6 +218,7 @@ impl<F: Real> Knee<F> {
             timing,
             settings: EffectSettings::default(),
             angle_rad,
+            is_driven: true,
             ticks: 0,
             bounds: [Bounds::default(); SYMPTOMS],
             allowed_nm: [0.0; SYMPTOMS],
@@ -261,7 +269,7 @@ impl<F: Real> Knee<F> {
             sample,
             omega_rad_s: F::ZERO,
             place: self.timing.sight.position(self.angle_rad),
-            is_driven: true,
+            is_driven: self.is_driven,
         };
         let mut shown = Shown::nothing();
         let mut words = Words::default();
@@ -305,6 +313,10 @@ impl<F: Real> Knee<F> {
                 .max(self.allowed_nm[place] - falls_nm)
                 .max(fading_nm);
             let rounding_nm = 1e-12_f64.max(64.0 * F::EPSILON.to_f64()) * (1.0 + allowed_nm);
+            assert!(
+                self.is_driven || nm == 0.0,
+                "{name}: {nm} N·m of a motor that is not driven"
+            );
             assert!(
                 nm.is_finite() && nm.abs() <= allowed_nm + spring_nm + 2.0 * SLEW_NM + rounding_nm,
                 "{name}: {nm} N·m, where {allowed_nm} are allowed"
