@@ -107,8 +107,8 @@ pub(crate) fn ended(child: &mut Child) -> ExitStatus {
     }
 }
 
-/// Signals that end a program in order. Without SIGHUP where these tests, and so
-/// their children, ignore it, as under `nohup`.
+/// Signals that end a program in order. Without those that these tests, and so their
+/// children, ignore, as under `nohup` or in the background of a shell.
 pub(crate) fn ending_signals() -> Vec<&'static str> {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let ignored = status
@@ -116,11 +116,14 @@ pub(crate) fn ending_signals() -> Vec<&'static str> {
         .find_map(|line| line.strip_prefix("SigIgn:"))
         .and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
         .unwrap();
-    let mut names = vec!["-TERM", "-INT"];
-    if ignored & 1 == 0 {
-        names.push("-HUP");
-    } else {
-        eprintln!("left out: SIGHUP, which is ignored here");
+    // One that is ignored to begin with is lost until the program handles it.
+    let mut names = vec!["-TERM"];
+    for (name, bit) in [("-HUP", 1), ("-INT", 2)] {
+        if ignored & bit == 0 {
+            names.push(name);
+        } else {
+            eprintln!("left out: SIG{}, which is ignored here", &name[1..]);
+        }
     }
     names
 }
