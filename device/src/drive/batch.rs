@@ -169,6 +169,11 @@ mod tests {
         block
     }
 
+    fn push_one(batch: &mut Batch, counters: &Counters) {
+        let (sample, phases) = (Sample::default(), EffectPhases::default());
+        batch.push(sample, phases, Revision(3), BlockFlags::default(), counters);
+    }
+
     #[test]
     fn windows_from_before_a_blocks_last_tick_end_with_blocks() {
         let counters = Counters::new();
@@ -180,13 +185,7 @@ mod tests {
                 "{n}"
             );
             assert!(!batch.ends_block() || batch.ends_blocks_from_here());
-            batch.push(
-                Sample::default(),
-                EffectPhases::default(),
-                Revision(3),
-                BlockFlags::default(),
-                &counters,
-            );
+            push_one(&mut batch, &counters);
         }
     }
 
@@ -196,13 +195,7 @@ mod tests {
         let mut batch = Batch::new(u64::MAX - 19, u16::MAX);
         let produce = |batch: &mut Batch, blocks: usize| {
             for _ in 0..blocks * BLOCK_SAMPLES {
-                batch.push(
-                    Sample::default(),
-                    EffectPhases::default(),
-                    Revision(3),
-                    BlockFlags::default(),
-                    &counters,
-                );
+                push_one(batch, &counters);
             }
         };
         produce(&mut batch, QUEUE_BLOCKS + 2);

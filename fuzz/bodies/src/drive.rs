@@ -12,6 +12,8 @@
 //! - every frame that it sends is valid, and every sample is accounted for;
 //! - parts of the record of a crash are that record's.
 
+mod readings;
+
 use crate::bytes::Bytes;
 use crate::link_inputs;
 use crate::winding::{CoilWinding, Winding};
@@ -20,7 +22,6 @@ use crepitus_device::drive::coil::{CoilOutput, LARGEST_COIL_DUTY};
 use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::prepare::LARGEST_DUTY;
-use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_device::drive::{Boot, Crash};
 use crepitus_device::self_test::SelfTest;
 use crepitus_protocol::counters::DriveCounter;
@@ -32,6 +33,7 @@ use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, SampleFlags};
 use crepitus_protocol::{
     Decoder, DeviceSettings, HEARTBEAT_TICKS, Lane, Revision, State, TICK_US, Values, frame, schema,
 };
+use readings::{Readings, SensorFault};
 use std::array;
 use std::collections::VecDeque;
 
@@ -80,110 +82,6 @@ pub fn body(data: &[u8]) {
         bench.step(&mut bytes);
     }
     bench.read(1_000);
-}
-
-/// The readings of some ticks.
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each is a line or a fact by itself"
-)]
-struct Readings {
-    turn: i8,
-    has_current: bool,
-    /// Replaces the current of the winding.
-    current_a: Option<f32>,
-    line: Option<bool>,
-    comms_line_is_off: bool,
-    has_tripped: bool,
-    is_late: bool,
-    is_idle: bool,
-    is_slow_good: bool,
-    odd: Option<Odd>,
-}
-
-/// What a sensor delivers beside the truth.
-#[derive(Clone, Copy, PartialEq)]
-enum Odd {
-    SupplyV(f32),
-    MotorC(f32),
-    JointTurns(f32),
-    NoSlowReading,
-    /// Of the second sensor of the current.
-    MonitorOffsetA(f32),
-    IntervalUs(u32),
-    CommsLineIsOn,
-    CoilA(f32),
-    CoilHasTripped,
-}
-
-/// All that there is of each.
-const ODD: [Odd; 16] = [
-    Odd::SupplyV(10.0),
-    Odd::SupplyV(40.0),
-    Odd::SupplyV(f32::NAN),
-    Odd::MotorC(90.0),
-    Odd::MotorC(f32::NAN),
-    Odd::JointTurns(0.5),
-    Odd::JointTurns(f32::NAN),
-    Odd::NoSlowReading,
-    Odd::MonitorOffsetA(1.0),
-    Odd::MonitorOffsetA(-0.3),
-    Odd::IntervalUs(TICK_US - 10),
-    Odd::IntervalUs(TICK_US + 10),
-    Odd::CommsLineIsOn,
-    Odd::CoilA(0.0),
-    Odd::CoilA(2.0),
-    Odd::CoilHasTripped,
-];
-
-impl Readings {
-    /// Of a device that is in order.
-    fn good() -> Self {
-        Self {
-            turn: 0,
-            has_current: true,
-            current_a: None,
-            line: None,
-            comms_line_is_off: false,
-            has_tripped: false,
-            is_late: false,
-            is_idle: true,
-            is_slow_good: true,
-            odd: None,
-        }
-    }
-
-    fn any(bytes: &mut Bytes<'_>) -> Self {
-        let how = bytes.byte();
-        Self {
-            turn: bytes.byte().cast_signed(),
-            has_current: how & 1 == 0,
-            current_a: (how & 2 != 0).then(|| bytes.f32()),
-            line: (how & 4 != 0).then_some(how & 8 != 0),
-            comms_line_is_off: how & 0x0c == 0x08,
-            has_tripped: how & 0x30 == 0x30,
-            is_late: how & 0x40 != 0,
-            is_idle: how & 0x80 == 0,
-            is_slow_good: how & 0x83 != 0x83,
-            odd: (how & 0x30 == 0x10).then(|| bytes.choice(&ODD)),
-        }
-    }
-
-    /// The slow reading of this tick.
-    fn slow(&self, tick: u64, current_a: f32) -> SlowInput {
-        if !self.is_slow_good {
-            return SlowInput::in_turn(tick, current_a, current_a, current_a);
-        }
-        let (mut supply_v, mut motor_c, mut joint_turns) = (24.0, 25.0, 0.0);
-        match self.odd {
-            Some(Odd::SupplyV(odd)) => supply_v = odd,
-            Some(Odd::MotorC(odd)) => motor_c = odd,
-            Some(Odd::JointTurns(odd)) => joint_turns = odd,
-            Some(Odd::NoSlowReading) => return SlowInput::None,
-            _ => {}
-        }
-        SlowInput::in_turn(tick, supply_v, motor_c, joint_turns)
-    }
 }
 
 /// A drive, and an oracle that observes its link.
@@ -465,10 +363,10 @@ impl Bench {
         let current_a = readings.current_a.unwrap_or(self.winding.current_a());
         let (mut monitor_a, mut interval_us, mut coil_a) =
             (current_a, TICK_US, self.coil.current_a());
-        match readings.odd {
-            Some(Odd::MonitorOffsetA(odd)) => monitor_a += odd,
-            Some(Odd::IntervalUs(odd)) => interval_us = odd,
-            Some(Odd::CoilA(odd)) => coil_a = odd,
+        match readings.sensor_fault {
+            Some(SensorFault::MonitorOffsetA(value)) => monitor_a += value,
+            Some(SensorFault::IntervalUs(value)) => interval_us = value,
+            Some(SensorFault::CoilA(value)) => coil_a = value,
             _ => {}
         }
         let inputs = Inputs {
@@ -476,13 +374,13 @@ impl Bench {
             monitor_a: readings.has_current.then_some(monitor_a),
             interval_us,
             enable_is_on: readings.line.unwrap_or(self.line_is_on),
-            comms_enable_is_on: readings.odd == Some(Odd::CommsLineIsOn)
+            comms_enable_is_on: readings.sensor_fault == Some(SensorFault::CommsLineIsOn)
                 || !readings.comms_line_is_off
                     && (before == State::Armed || self.drive.awaits_comms()),
             has_tripped: readings.has_tripped,
             slow: readings.slow(tick, current_a),
             coil_a: readings.has_current.then_some(coil_a),
-            coil_has_tripped: readings.odd == Some(Odd::CoilHasTripped),
+            coil_has_tripped: readings.sensor_fault == Some(SensorFault::CoilHasTripped),
         };
         let coil_fault = self.drive.coil_fault();
         let outputs = self.drive.command_motor(&inputs);

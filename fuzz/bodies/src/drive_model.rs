@@ -86,8 +86,8 @@ impl DriveModel {
         }
     }
 
-    /// Whether the last block that it sent has a current that no drive commands, and says that
-    /// there is torque; not one that is older for comms, after a restart that it cannot see.
+    /// Whether the last block shows an overcurrent while armed or arming. A stale block does not
+    /// count: after an unseen restart comms ignores it.
     pub(crate) fn shows_overcurrent(&self) -> bool {
         self.blocks.back().is_some_and(|block| {
             let is_live = matches!(block.flags.state(), State::Arming | State::Armed);

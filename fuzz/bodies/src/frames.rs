@@ -65,7 +65,7 @@ fn stream(noise: &[u8], golden: &[u8]) {
     for byte in noise {
         if let Some(Ok(body)) = decoder.push(*byte) {
             found += 1;
-            assert!(is_checked(&run, &body), "{run:02x?} is no frame");
+            assert!(has_valid_crc(&run, &body), "{run:02x?} is no frame");
             understood(&body);
         }
         if *byte != 0 {
@@ -89,8 +89,8 @@ fn stream(noise: &[u8], golden: &[u8]) {
     assert_eq!(decoder.discarded(), discarded);
 }
 
-/// Whether the run of bytes is that body with its checksum, by a reader of our own.
-fn is_checked(run: &[u8], body: &Body<'_>) -> bool {
+/// Whether the frame holds that body and a valid CRC, by an independent decoder.
+fn has_valid_crc(run: &[u8], body: &Body<'_>) -> bool {
     let mut plain = Vec::new();
     let mut rest = run;
     while let Some((code, next)) = rest.split_first() {

@@ -106,7 +106,7 @@ fn tick<F: Real, L: Locate<F, Shape = Linear>>(
 /// of them.
 const MOST_BACK_COUNTS: f64 = 2.0 + 1e-3;
 
-/// How far the shaft has turned back in a slip, with torque that would push it on.
+/// Independent turn-back guard: how far the shaft has turned back within a slip.
 struct Guard {
     most_rad: f64,
     behind_rad: f64,
@@ -122,7 +122,7 @@ impl Guard {
         }
     }
 
-    /// Whether there must be no torque: of a slip in which every sample is known.
+    /// Whether the torque must be zero. Starts anew with each slip and after a lost sample.
     fn has_turned(&mut self, turned_rad: Option<f64>, phase: Phase, slip_number: u32) -> bool {
         let before = self.slip.take();
         let (Phase::Slip(sense), Some(turned_rad)) = (phase, turned_rad) else {

@@ -57,8 +57,8 @@ fn assert_reset(host: &mut Host, what: &str) {
     assert!(!host.board.drive_is_on(), "{what}");
 }
 
-/// Where registers begin: what is before survives a reset.
-const REGISTERS: u32 = 0x4000_0000;
+/// Start of the peripheral registers. Memory below keeps its content over a reset.
+const PERIPHERALS: u32 = 0x4000_0000;
 
 #[test]
 fn a_store_from_outside_command_motor_is_not_done_and_ends_in_a_reset() {
@@ -87,7 +87,7 @@ fn a_store_from_outside_command_motor_is_not_done_and_ends_in_a_reset() {
         mcu.listen(&[address, TIM1_BDTR]);
         run_in_idle(&mut host, &store(address, value));
         assert_reset(&mut host, what);
-        if address < REGISTERS {
+        if address < PERIPHERALS {
             assert_eq!(host.board.mcu_mut().peek(address), before, "{what}");
         }
         let (reset, _) = host.board.resets()[0];
