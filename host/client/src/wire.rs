@@ -20,9 +20,16 @@ pub(crate) enum Incoming {
 #[derive(Debug)]
 pub(crate) struct Wire<T> {
     transport: T,
+    inbox: Inbox,
+}
+
+/// Bytes that were received, and what they say. Of no transport: messages are decoded in one
+/// place, compiled in this crate.
+#[derive(Debug)]
+struct Inbox {
     decoder: Decoder,
-    inbox: Vec<u8>,
-    /// Read position in the inbox, and its end.
+    bytes: Vec<u8>,
+    /// Read position, and its end.
     at: usize,
     end: usize,
     frames: u64,
@@ -33,12 +40,14 @@ impl<T: Transport> Wire<T> {
     pub(crate) fn new(transport: T) -> Self {
         Self {
             transport,
-            decoder: Decoder::new(),
-            inbox: vec![0; 4_096],
-            at: 0,
-            end: 0,
-            frames: 0,
-            foreign: 0,
+            inbox: Inbox {
+                decoder: Decoder::new(),
+                bytes: vec![0; 4_096],
+                at: 0,
+                end: 0,
+                frames: 0,
+                foreign: 0,
+            },
         }
     }
 
@@ -65,14 +74,14 @@ impl<T: Transport> Wire<T> {
     /// Counters: valid frames; discarded frames; frames of an unknown lane or
     /// with another schema tag.
     pub(crate) fn counts(&self) -> (u64, u64, u64) {
-        let discarded = u64::from(self.decoder.discarded().total());
-        (self.frames, discarded, self.foreign)
+        let discarded = u64::from(self.inbox.decoder.discarded().total());
+        (self.inbox.frames, discarded, self.inbox.foreign)
     }
 
     /// Reopens the connection and clears partial frames.
     pub(crate) fn reopen(&mut self) -> Result<(), TransportError> {
-        (self.at, self.end) = (0, 0);
-        self.decoder.reset();
+        self.inbox.hold(0);
+        self.inbox.decoder.reset();
         self.transport.reopen()
     }
 
@@ -82,7 +91,7 @@ impl<T: Transport> Wire<T> {
     }
 
     pub(crate) fn request(&mut self, request: &Request) -> Result<(), TransportError> {
-        match frame::encode(Lane::Request, request) {
+        match encoded(request) {
             Ok(frame) => self.transport.send(&frame),
             // Cannot fail: the protocol checks at compile time that every message fits.
             Err(frame::TooLong) => Ok(()),
@@ -103,7 +112,7 @@ impl<T: Transport> Wire<T> {
     pub(crate) fn next(&mut self, until: Duration) -> Result<Option<Incoming>, TransportError> {
         let mut is_first = true;
         loop {
-            if let Some(heard) = self.decode() {
+            if let Some(heard) = self.inbox.next() {
                 return Ok(Some(heard));
             }
             let patience = until.saturating_sub(self.now());
@@ -111,17 +120,28 @@ impl<T: Transport> Wire<T> {
                 return Ok(None);
             }
             is_first = false;
-            let count = self.transport.receive(&mut self.inbox, patience)?;
+            let count = self.transport.receive(&mut self.inbox.bytes, patience)?;
             if count == 0 {
                 return Ok(None);
             }
-            (self.at, self.end) = (0, count.min(self.inbox.len()));
+            self.inbox.hold(count);
         }
     }
+}
 
-    /// Returns the next message of the inbox.
-    fn decode(&mut self) -> Option<Incoming> {
-        while let Some(byte) = self.inbox.get(self.at..self.end)?.first() {
+fn encoded(request: &Request) -> Result<frame::Frame, frame::TooLong> {
+    frame::encode(Lane::Request, request)
+}
+
+impl Inbox {
+    /// It holds `count` bytes now, none of them read.
+    fn hold(&mut self, count: usize) {
+        (self.at, self.end) = (0, count.min(self.bytes.len()));
+    }
+
+    /// The next message in it.
+    fn next(&mut self) -> Option<Incoming> {
+        while let Some(byte) = self.bytes.get(self.at..self.end)?.first() {
             self.at += 1;
             let Some(Ok(body)) = self.decoder.push(*byte) else {
                 continue;

@@ -31,6 +31,7 @@ mod parameters;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod recording;
+mod report_columns;
 mod row;
 mod samples;
 mod shaft;
@@ -44,6 +45,7 @@ pub use log::recorder::{RecordError, Recorder};
 pub use metadata::{Controller, Metadata};
 pub use parameters::{History, InForce, Named, ParameterSet, named_values};
 pub use recording::{Damage, Format, ReadError, Recording, Rows, seconds};
+pub use report_columns::ReportColumns;
 pub use row::{COLUMNS, Row};
 pub use samples::Samples;
 

@@ -7,7 +7,7 @@
 //! ρ(τ) = Σ Re(X*·Y·e^(iωτ)) / √(Σ|X|²·Σ|Y|²)
 //! ```
 
-use realfft::RealFftPlanner;
+use crate::forward_transform;
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
 
@@ -45,7 +45,7 @@ impl Cross {
         if length < 256 {
             return None;
         }
-        let fft = RealFftPlanner::new().plan_fft_forward(length);
+        let fft = forward_transform(length);
         let hann: Vec<f64> = (0..length)
             .map(|i| 0.5 - 0.5 * (TAU * i as f64 / length as f64).cos())
             .collect();

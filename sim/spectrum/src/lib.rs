@@ -52,6 +52,12 @@ impl Spectrum {
     }
 }
 
+/// The plan of a transform of so many real values. Whoever transforms takes it from here: the planner
+/// is generic, and each crate that calls it would compile all its kernels.
+pub fn forward_transform(length: usize) -> Arc<dyn RealToComplex<f64>> {
+    RealFftPlanner::new().plan_fft_forward(length)
+}
+
 /// See the module.
 pub struct Welch {
     rate: f64,
@@ -95,7 +101,7 @@ impl Welch {
         while length > Self::SHORTEST && expected != 0 && expected < length as u64 {
             length /= 2;
         }
-        let fft = RealFftPlanner::new().plan_fft_forward(length);
+        let fft = forward_transform(length);
         let turn = std::f64::consts::TAU / length as f64;
         Some(Self {
             rate,

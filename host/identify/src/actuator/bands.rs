@@ -2,7 +2,7 @@
 //! and as the fit begins from it.
 
 use crate::actuator::spectrum::Line;
-use realfft::num_complex::Complex;
+use crepitus_spectrum::Complex;
 
 /// Number of bands per octave.
 const PER_OCTAVE: f64 = 24.0;

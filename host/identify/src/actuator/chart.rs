@@ -4,7 +4,7 @@ use crate::actuator::Actuator;
 use crepitus_plot::number::rounded;
 use crepitus_plot::palette::{OBJECT, SHAFT};
 use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Point, Sign, stack};
-use realfft::num_complex::Complex;
+use crepitus_spectrum::Complex;
 use std::f64::consts::TAU;
 
 /// Width and heights, CSS pixels.

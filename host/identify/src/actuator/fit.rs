@@ -15,8 +15,8 @@ use crate::actuator::impedance::{Impedance, NUMBERS};
 use crate::actuator::second::second;
 use crate::actuator::spectrum::{Line, Spectrum};
 use crate::actuator::start::start;
+use crepitus_spectrum::Complex;
 use nalgebra::{SMatrix, SVector};
-use realfft::num_complex::Complex;
 
 /// Square matrix over the parameters.
 pub(crate) type Square = SMatrix<f64, NUMBERS, NUMBERS>;

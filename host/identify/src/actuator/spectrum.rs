@@ -1,8 +1,7 @@
 //! Spectral lines of voltage and current in the band of the chirp.
 
 use crate::actuator::{Band, Series};
-use realfft::RealFftPlanner;
-use realfft::num_complex::Complex;
+use crepitus_spectrum::{Complex, forward_transform};
 
 /// Voltage and current at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +67,7 @@ impl Spectrum {
 }
 
 fn transformed(values: &[f64]) -> Vec<Complex<f64>> {
-    let fft = RealFftPlanner::<f64>::new().plan_fft_forward(values.len());
+    let fft = forward_transform(values.len());
     let mut input = values.to_vec();
     let mut output = fft.make_output_vec();
     // Fails for buffers of another length only, and these are the plan's.

@@ -3,8 +3,8 @@
 
 use crate::actuator::bands::Mean;
 use crate::actuator::impedance::Impedance;
+use crepitus_spectrum::Complex;
 use nalgebra::{Matrix3, Vector3};
-use realfft::num_complex::Complex;
 
 /// Steps of the resonance over the band.
 const STEPS: u32 = 120;

@@ -4,7 +4,7 @@ use crate::books::{Begin, Totals};
 use crate::metadata::Metadata;
 use crate::parameters::Named;
 use crepitus_protocol::Lane;
-use crepitus_protocol::frame::{CRC, CRC_BYTES, DELIMITER};
+use crepitus_protocol::frame::{CRC, CRC_BYTES, DELIMITER, Frame, TooLong, encode};
 use crepitus_protocol::telemetry::Block;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -60,6 +60,12 @@ impl Entry {
         frame.push(DELIMITER);
         Ok(frame)
     }
+}
+
+/// A block as the device's own frame. Apart from the recorder, which is generic and so compiled
+/// where it is used: there are thousands of blocks a second.
+pub(crate) fn of_block(block: &Block) -> Result<Frame, TooLong> {
+    encode(Lane::Telemetry, block)
 }
 
 /// More than any count reaches: centuries of ticks. A file with larger ones is
@@ -137,7 +143,6 @@ impl Owner {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_protocol::frame::encode;
 
     fn is_read(frame: &[u8]) -> bool {
         let (_, body) = frame.split_last().expect("a delimiter");

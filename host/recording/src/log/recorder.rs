@@ -1,13 +1,13 @@
 //! Writing of a recording as the samples arrive.
 
 use super::disk::{Background, Disk};
-use super::frame::{Checkpoint, Entry};
+use super::frame::{Checkpoint, Entry, of_block};
 use super::{CHECKPOINT_BLOCKS, MAGIC};
 use crate::books::{Begin, Ledger, Totals};
 use crate::metadata::Metadata;
 use crate::parameters::named_values;
 use crepitus_protocol::telemetry::Block;
-use crepitus_protocol::{Lane, Revision, Values, frame};
+use crepitus_protocol::{Revision, Values};
 use sha2::{Digest, Sha256};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -152,7 +152,7 @@ impl<D: Disk> Recorder<D> {
             return Ok(());
         }
         self.note_parameters(block.revision)?;
-        let frame = frame::encode(Lane::Telemetry, block)
+        let frame = of_block(block)
             .map_err(|_| self.failed("a block is too long", io::ErrorKind::InvalidData.into()))?;
         self.put(&frame);
         self.blocks += 1;

@@ -1,6 +1,5 @@
 //! `crepitus report FILE`: the report of a recording.
 
-mod effects;
 mod tables;
 
 use crate::failure::{Failure, print, print_json};
@@ -16,36 +15,11 @@ use crate::wav::Wav;
 use clap::Args;
 use crepitus_protocol::TICK_S;
 use crepitus_recording::{
-    Analysis, ArmingPushes, Damage, History, Recording, RecordingSummary, seconds,
+    Analysis, ArmingPushes, Damage, History, Recording, RecordingSummary, ReportColumns, seconds,
 };
 use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
 use crepitus_scene::output::Folder;
-use crepitus_scene::trace::{Column, ColumnKind};
-use effects::Effects;
 use std::path::{Path, PathBuf};
-
-/// The columns that every report of a recording draws.
-const COLUMNS: [Column; 8] = {
-    const fn number(name: &'static str) -> Column {
-        Column {
-            name,
-            kind: ColumnKind::Number,
-        }
-    }
-    [
-        number("t_s"),
-        number("angle_rad"),
-        number("omega_rad_s"),
-        Column {
-            name: "phase",
-            kind: ColumnKind::Phase,
-        },
-        number("theta_rad"),
-        number("theta_dot_rad_s"),
-        number("torque_nm"),
-        number("motor_torque_nm"),
-    ]
-};
 
 /// Rows between two updates of the progress.
 const PROGRESS_ROWS: u64 = 1 << 14;
@@ -135,8 +109,8 @@ pub(super) fn write_into(
     extras: &Extras<'_>,
 ) -> Result<Reported<RecordingSummary>, Failure> {
     let parameters = recording.parameters();
-    let effects = Effects::of(parameters);
-    let columns = effects.columns();
+    let report_columns = ReportColumns::of(parameters);
+    let columns = report_columns.columns();
     let measured = extras.overlay.read(&columns)?;
     let mut listener = extras.wav.listener(&columns, TICK_S)?;
     let expected = recording.books().totals.received;
@@ -145,14 +119,15 @@ pub(super) fn write_into(
         rows_expected: expected,
         row_step_s: TICK_S,
         levels: levels(parameters),
-        effects: effects.settings,
+        effects: report_columns.settings(),
     };
     let mut collector = Collector::new(&setup);
-    collector.may_lack_from(COLUMNS.len());
+    collector.may_lack_from(ReportColumns::ALWAYS);
     collector.compare(measured, &columns);
     let mut changes = parameters.changes().peekable();
     let mut changed_at_s = Vec::new();
     let mut previous_s = 0.0;
+    let mut values = Vec::new();
     let mut pushes = ArmingPushes::default();
     let mut analysis = Analysis::new(recording);
     let mut progress = Progress::of_reading();
@@ -170,18 +145,7 @@ pub(super) fn write_into(
         }
         previous_s = row.time_s;
         let derived = analysis.row(&row);
-        let mut values = Vec::with_capacity(columns.len());
-        values.extend([
-            row.time_s,
-            row.angle_rad,
-            f64::from(row.omega_rad_s),
-            f64::from(row.flags.phase_sign()),
-            derived.object.theta_rad,
-            derived.object.theta_dot_rad_s,
-            f64::from(row.model_torque_nm),
-            derived.motor_torque_nm,
-        ]);
-        values.extend(effects.values(&row));
+        report_columns.read(&row, &derived, &mut values);
         collector.row(&values);
         if let Some(listener) = &mut listener {
             listener.row(&values)?;

@@ -33,23 +33,7 @@ impl<W: Write> TraceCsv<W> {
     /// Those of the writer.
     pub fn row(&mut self, values: &[f64]) -> io::Result<()> {
         self.line.clear();
-        for (column, &value) in self.columns.iter().zip(values) {
-            if !self.line.is_empty() {
-                self.line.push(',');
-            }
-            match column.kind {
-                ColumnKind::Number => push_number(&mut self.line, value),
-                ColumnKind::Whole => {
-                    let from = self.line.len();
-                    push_number(&mut self.line, value);
-                    if self.line[from..].ends_with(".0") {
-                        self.line.truncate(self.line.len() - 2);
-                    }
-                }
-                ColumnKind::Phase => self.line.push_str(phase_name(value)),
-            }
-        }
-        self.line.push('\n');
+        append_row(&mut self.line, &self.columns, values);
         self.to.write_all(self.line.as_bytes())
     }
 
@@ -57,4 +41,25 @@ impl<W: Write> TraceCsv<W> {
     pub fn into_inner(self) -> W {
         self.to
     }
+}
+
+/// Apart from the writer, which is generic: compiled here, whoever writes.
+fn append_row(line: &mut String, columns: &[Column], values: &[f64]) {
+    for (column, &value) in columns.iter().zip(values) {
+        if !line.is_empty() {
+            line.push(',');
+        }
+        match column.kind {
+            ColumnKind::Number => push_number(line, value),
+            ColumnKind::Whole => {
+                let from = line.len();
+                push_number(line, value);
+                if line[from..].ends_with(".0") {
+                    line.truncate(line.len() - 2);
+                }
+            }
+            ColumnKind::Phase => line.push_str(phase_name(value)),
+        }
+    }
+    line.push('\n');
 }

@@ -5,10 +5,11 @@ use super::sensor::{Encoded, Ideal, Sensor};
 use super::tally::{Gap, ObjectState, StickEnd, Tally};
 use super::watch::{Ended, Watch};
 use super::{Diverged, RunError, Totals, steps};
+use crate::any_joint::{AnyJoint, Precise};
 use crate::scene::Scene;
 use crate::trace::EventRecord;
 use crate::walk::Walk;
-use crepitus_model::solver::{JointVisitor, Solver, with_joint};
+use crepitus_model::solver::Solver;
 use crepitus_model::{EVENTS_PER_STEP, Event, Phase, Real, Settings, ShaftStep, StickSlip};
 
 /// How many steps go by between two reports of progress.
@@ -18,7 +19,7 @@ pub(super) const PROGRESS_STEPS: u64 = 1 << 16;
 pub(super) const CHECK_STEPS: u64 = 1 << 10;
 
 /// Chooses the types that the scene calls for, and runs.
-pub(super) fn simulate<F: Real>(
+pub(super) fn simulate<F: Precise>(
     scene: &Scene,
     solver: Solver,
     step_s: f64,
@@ -33,7 +34,7 @@ pub(super) fn simulate<F: Real>(
     }
 }
 
-fn with_sensor<F: Real, S: Sensor<F>>(
+fn with_sensor<F: Precise, S: Sensor<F>>(
     scene: &Scene,
     solver: Solver,
     step_s: f64,
@@ -44,13 +45,8 @@ fn with_sensor<F: Real, S: Sensor<F>>(
         return bare(scene, watch, sensor);
     };
     let omega = F::from_f64(scene.start().omega_rad_s);
-    let run = Run {
-        scene,
-        watch,
-        settings: *crepitus.settings,
-        sensor,
-    };
-    with_joint::<F, _>(&crepitus.settings, solver, step_s, omega, run)?
+    let joint = AnyJoint::new(&crepitus.settings, solver, step_s, omega)?;
+    with_joint(scene, watch, *crepitus.settings, sensor, joint)
 }
 
 /// A scene without a joint: the motion, and perhaps its sensor.
@@ -92,87 +88,76 @@ fn bare<F: Real, S: Sensor<F>>(
 }
 
 /// A scene with a joint.
-struct Run<'a, S> {
-    scene: &'a Scene,
-    watch: &'a mut dyn Watch,
+fn with_joint<F: Real, S: Sensor<F>>(
+    scene: &Scene,
+    watch: &mut dyn Watch,
     settings: Settings,
-    sensor: S,
-}
-
-impl<F: Real, S: Sensor<F>> JointVisitor<F> for Run<'_, S> {
-    type Output = Result<Totals, Ended>;
-
-    fn visit<J: StickSlip<F>>(self, mut joint: J) -> Self::Output {
-        let Self {
-            scene,
-            watch,
-            settings,
-            mut sensor,
-        } = self;
-        let (steps, every) = steps(scene);
-        let wants_rows = watch.wants_rows();
-        let step_s = scene.step_s();
-        let mut walk = Walk::new(&scene.motion, step_s);
-        let mut accounting = StepAccounting::new::<F>(settings, step_s, walk.now().omega_rad_s);
-        let mut row = Vec::new();
-        let mut fastest_rad_s = walk.now().omega_rad_s.abs();
-        accounting.tally.shown(joint.torque_nm().to_f64());
-        loop {
-            let is_row = wants_rows && walk.steps().is_multiple_of(every);
-            // Before its row: a trace holds numbers.
-            if (is_row || walk.steps().is_multiple_of(CHECK_STEPS) || walk.steps() == steps)
-                && !(joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite())
-            {
-                return Err(RunError::Diverged(Diverged::Object {
-                    solver: scene.solver.name(),
-                    by_s: walk.time_s(),
-                    radians_per_step: settings.parameters.natural_rad_s() * step_s,
-                }));
-            }
-            if is_row {
-                row.clear();
-                row.extend([
-                    walk.time_s(),
-                    walk.now().angle_rad,
-                    walk.now().omega_rad_s,
-                    f64::from(joint.phase().sign()),
-                    joint.theta_rad().to_f64(),
-                    joint.theta_dot_rad_s().to_f64(),
-                    joint.torque_nm().to_f64(),
-                ]);
-                sensor.write(&mut row);
-                watch.row(&row)?;
-            }
-            if walk.steps().is_multiple_of(PROGRESS_STEPS) {
-                watch.progress(walk.time_s())?;
-            }
-            if walk.steps() == steps {
-                break;
-            }
-            let start_s = walk.time_s();
-            let (from, to) = walk.step();
-            fastest_rad_s = fastest_rad_s.max(to.omega_rad_s.abs());
-            let seen = sensor.see(&from, &to);
-            let mut result = Ok(());
-            joint.step(&seen, |event| {
-                let record = accounting.event(start_s, &seen, &event);
-                if result.is_ok() {
-                    result = watch.event(&record);
-                }
-            });
-            result?;
-            accounting.end_step(&seen, &joint);
+    mut sensor: S,
+    mut joint: AnyJoint<F>,
+) -> Result<Totals, Ended> {
+    let (steps, every) = steps(scene);
+    let wants_rows = watch.wants_rows();
+    let step_s = scene.step_s();
+    let mut walk = Walk::new(&scene.motion, step_s);
+    let mut accounting = StepAccounting::new::<F>(settings, step_s, walk.now().omega_rad_s);
+    let mut row = Vec::new();
+    let mut fastest_rad_s = walk.now().omega_rad_s.abs();
+    accounting.tally.shown(joint.torque_nm().to_f64());
+    loop {
+        let is_row = wants_rows && walk.steps().is_multiple_of(every);
+        // Before its row: a trace holds numbers.
+        if (is_row || walk.steps().is_multiple_of(CHECK_STEPS) || walk.steps() == steps)
+            && !(joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite())
+        {
+            return Err(RunError::Diverged(Diverged::Object {
+                solver: scene.solver.name(),
+                by_s: walk.time_s(),
+                radians_per_step: settings.parameters.natural_rad_s() * step_s,
+            }));
         }
-        accounting.finish(walk.time_s(), &joint);
-        Ok(Totals {
-            steps,
-            end_s: walk.time_s(),
-            tally: Some(accounting.tally),
-            fastest_rad_s,
-            crowded_steps: accounting.crowded_steps,
-            plant: None,
-        })
+        if is_row {
+            row.clear();
+            row.extend([
+                walk.time_s(),
+                walk.now().angle_rad,
+                walk.now().omega_rad_s,
+                f64::from(joint.phase().sign()),
+                joint.theta_rad().to_f64(),
+                joint.theta_dot_rad_s().to_f64(),
+                joint.torque_nm().to_f64(),
+            ]);
+            sensor.write(&mut row);
+            watch.row(&row)?;
+        }
+        if walk.steps().is_multiple_of(PROGRESS_STEPS) {
+            watch.progress(walk.time_s())?;
+        }
+        if walk.steps() == steps {
+            break;
+        }
+        let start_s = walk.time_s();
+        let (from, to) = walk.step();
+        fastest_rad_s = fastest_rad_s.max(to.omega_rad_s.abs());
+        let seen = sensor.see(&from, &to);
+        let mut result = Ok(());
+        joint.step(&seen, |event| {
+            let record = accounting.event(start_s, &seen, &event);
+            if result.is_ok() {
+                result = watch.event(&record);
+            }
+        });
+        result?;
+        accounting.end_step(&seen, &joint);
     }
+    accounting.finish(walk.time_s(), &joint);
+    Ok(Totals {
+        steps,
+        end_s: walk.time_s(),
+        tally: Some(accounting.tally),
+        fastest_rad_s,
+        crowded_steps: accounting.crowded_steps,
+        plant: None,
+    })
 }
 
 /// Keeps the tally of a stepping run: where in the step it is, and what the

@@ -1,27 +1,55 @@
-//! The effects of a recording besides crepitus: which were on, with which settings, and
-//! what columns they add to its report.
+//! What the report of a recording draws: the columns that each has, and those of the effects
+//! that were on besides crepitus.
 
-use super::COLUMNS;
+use crate::analysis::Derived;
+use crate::parameters::History;
+use crate::row::Row;
 use crepitus_model::parameters::Source;
 use crepitus_model::render::effects::{EffectSettings, EffectSpec, SPECS};
 use crepitus_protocol::parameters::find;
 use crepitus_protocol::{LimitReason, Values};
-use crepitus_recording::{History, Row};
 use crepitus_scene::trace::{Column, ColumnKind};
 
+/// The columns that every report of a recording draws.
+const ALWAYS: [Column; 8] = {
+    const fn number(name: &'static str) -> Column {
+        Column {
+            name,
+            kind: ColumnKind::Number,
+        }
+    }
+    [
+        number("t_s"),
+        number("angle_rad"),
+        number("omega_rad_s"),
+        Column {
+            name: "phase",
+            kind: ColumnKind::Phase,
+        },
+        number("theta_rad"),
+        number("theta_dot_rad_s"),
+        number("torque_nm"),
+        number("motor_torque_nm"),
+    ]
+};
+
 /// See the module.
-pub(super) struct Effects {
+#[derive(Debug)]
+pub struct ReportColumns {
     /// Of the symptoms whose settings were the same whenever they were on.
-    pub(super) settings: EffectSettings,
+    settings: EffectSettings,
     /// The symptoms that were on at any time.
     symptoms: Vec<&'static EffectSpec>,
     /// The vibration actuator was.
     has_coil: bool,
 }
 
-impl Effects {
-    /// Of these parameters.
-    pub(super) fn of(parameters: &History) -> Self {
+impl ReportColumns {
+    /// So many at the begin are those of every recording.
+    pub const ALWAYS: usize = ALWAYS.len();
+
+    /// Of a recording with these parameters.
+    pub fn of(parameters: &History) -> Self {
         let mut in_force = parameters.in_force();
         let sets = parameters.0.iter().filter_map(|set| {
             in_force.at(set.first_row);
@@ -54,9 +82,14 @@ impl Effects {
         }
     }
 
-    /// The columns of the report: those of every recording, the phase of each symptom, and
-    /// the current of the vibration actuator's coil.
-    pub(super) fn columns(&self) -> Vec<Column> {
+    /// The settings of the symptoms that were the same whenever they were on.
+    pub fn settings(&self) -> EffectSettings {
+        self.settings
+    }
+
+    /// Those of every recording, the phase of each symptom, and the current of the vibration
+    /// actuator's coil.
+    pub fn columns(&self) -> Vec<Column> {
         let phases = self.symptoms.iter().filter_map(|spec| spec.phases);
         let phases = phases.map(|phases| Column {
             name: phases.column,
@@ -66,22 +99,35 @@ impl Effects {
             name: "coil_current_a",
             kind: ColumnKind::Number,
         });
-        COLUMNS.into_iter().chain(phases).chain(coil).collect()
+        ALWAYS.into_iter().chain(phases).chain(coil).collect()
     }
 
-    /// Their values in a row, in the order of the columns; NaN while nothing is rendered.
-    pub(super) fn values(&self, row: &Row) -> impl Iterator<Item = f64> {
+    /// Their values in a row, in the place of what `values` held; those of effects are NaN while
+    /// nothing is rendered.
+    pub fn read(&self, row: &Row, derived: &Derived, values: &mut Vec<f64>) {
+        values.clear();
+        values.extend([
+            row.time_s,
+            row.angle_rad,
+            f64::from(row.omega_rad_s),
+            f64::from(row.flags.phase_sign()),
+            derived.object.theta_rad,
+            derived.object.theta_dot_rad_s,
+            f64::from(row.model_torque_nm),
+            derived.motor_torque_nm,
+        ]);
         let is_armed = row.flags.limit() != LimitReason::NotArmed;
         let phases = row.phases;
-        let coil_a = row.coil_a.map_or(f64::NAN, f64::from);
-        let phases = self.symptoms.iter().map(move |spec| {
+        values.extend(self.symptoms.iter().map(|spec| {
             if is_armed {
                 f64::from(phases.get(spec))
             } else {
                 f64::NAN
             }
-        });
-        phases.chain(self.has_coil.then_some(coil_a))
+        }));
+        if self.has_coil {
+            values.push(row.coil_a.map_or(f64::NAN, f64::from));
+        }
     }
 }
 
@@ -94,10 +140,11 @@ fn of_effect(values: &Values, spec: &EffectSpec) -> Vec<(u8, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::Object;
+    use crate::parameters::{ParameterSet, named_values};
     use crepitus_model::Tabled;
     use crepitus_model::render::effects::lead_pipe::LeadPipeSettings;
     use crepitus_protocol::telemetry::SampleFlags;
-    use crepitus_recording::{ParameterSet, named_values};
 
     fn set(values: &Values, first_row: u64) -> ParameterSet {
         ParameterSet {
@@ -110,6 +157,21 @@ mod tests {
 
     fn id(name: &str) -> u8 {
         find(name).expect("a parameter").0
+    }
+
+    fn values(columns: &ReportColumns, row: &Row) -> Vec<f64> {
+        let derived = Derived {
+            object: Object {
+                theta_rad: 0.0,
+                theta_dot_rad_s: 0.0,
+            },
+            event: None,
+            motor_torque_nm: 0.5,
+        };
+        let mut values = vec![7.0];
+        columns.read(row, &derived, &mut values);
+        assert_eq!(values[ReportColumns::ALWAYS - 1], 0.5);
+        values
     }
 
     #[test]
@@ -126,56 +188,56 @@ mod tests {
             set(&other, 20),
             set(&off, 30),
         ]);
-        let effects = Effects::of(&history);
+        let effects = ReportColumns::of(&history);
         assert_eq!(
-            effects.settings.lead_pipe,
+            effects.settings().lead_pipe,
             Some(LeadPipeSettings::defaults())
         );
-        assert_eq!(effects.settings.range_limit, None);
+        assert_eq!(effects.settings().range_limit, None);
         let columns = effects.columns();
         let names: Vec<&str> = columns.iter().map(|c| c.name).collect();
         assert_eq!(
-            names[COLUMNS.len()..],
+            names[ReportColumns::ALWAYS..],
             ["range_limit_phase", "lead_pipe_phase"]
         );
-        let none = Effects::of(&History(vec![set(&off, 0)]));
-        assert_eq!(none.columns(), COLUMNS);
-        assert_eq!(none.settings, EffectSettings::default());
+        let none = ReportColumns::of(&History(vec![set(&off, 0)]));
+        assert_eq!(none.columns(), ALWAYS);
+        assert_eq!(none.settings(), EffectSettings::default());
     }
 
     #[test]
     fn the_coil_has_a_column_if_the_actuator_was_on_and_a_value_while_it_is_driven() {
         let mut on = Values::default();
         on.set(id("vibration-actuator.render"), 1.0);
-        let effects = Effects::of(&History(vec![set(&Values::default(), 0), set(&on, 9)]));
+        let effects = ReportColumns::of(&History(vec![set(&Values::default(), 0), set(&on, 9)]));
         let columns = effects.columns();
         assert_eq!(columns.last().map(|c| c.name), Some("coil_current_a"));
         let driven = Row {
             coil_a: Some(0.25),
             ..Row::default()
         };
-        let values: Vec<f64> = effects.values(&driven).collect();
+        let values = values(&effects, &driven);
         assert_eq!(values.last(), Some(&0.25));
-        assert_eq!(COLUMNS.len() + values.len(), columns.len());
-        let asleep = effects.values(&Row::default()).last();
-        assert!(asleep.is_some_and(f64::is_nan));
+        assert_eq!(values.len(), columns.len());
+        let asleep = self::values(&effects, &Row::default());
+        assert!(asleep.last().is_some_and(|value| value.is_nan()));
     }
 
     #[test]
     fn phases_are_known_while_it_is_armed() {
         let mut on = Values::default();
         on.set(id("lead-pipe.render"), 1.0);
-        let effects = Effects::of(&History(vec![set(&on, 0)]));
+        let effects = ReportColumns::of(&History(vec![set(&on, 0)]));
         let phases = Row::default().phases.with_named("lead-pipe", "sliding");
         let row = Row {
             phases: phases.expect("a phase"),
             ..Row::default()
         };
-        assert_eq!(effects.values(&row).collect::<Vec<_>>(), [1.0]);
+        assert_eq!(values(&effects, &row)[ReportColumns::ALWAYS..], [1.0]);
         let not_armed = Row {
             flags: SampleFlags::default().with_limit(LimitReason::NotArmed),
             ..row
         };
-        assert!(effects.values(&not_armed).all(f64::is_nan));
+        assert!(values(&effects, &not_armed)[ReportColumns::ALWAYS].is_nan());
     }
 }
