@@ -1,5 +1,6 @@
 //! Signal handling during long work, for Ctrl-C.
 
+use crepitus_study::{Cancelled, Watcher};
 use pyo3::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -37,10 +38,31 @@ impl Signals {
     }
 }
 
-impl crepitus_study::Watcher for Signals {
-    type Error = PyErr;
+/// Cancels a study when a handler raises an exception, and keeps it.
+pub(crate) struct Watch {
+    signals: Signals,
+    raised: Option<PyErr>,
+}
 
-    fn progress(&mut self, _: f64) -> PyResult<()> {
-        self.check()
+impl Watch {
+    pub(crate) fn new() -> Self {
+        Self {
+            signals: Signals::new(),
+            raised: None,
+        }
+    }
+
+    /// The exception that ended the study; `otherwise` if none did.
+    pub(crate) fn raised_or(self, otherwise: impl FnOnce() -> PyErr) -> PyErr {
+        self.raised.unwrap_or_else(otherwise)
+    }
+}
+
+impl Watcher for Watch {
+    fn progress(&mut self, _: f64) -> Result<(), Cancelled> {
+        self.signals.check().map_err(|raised| {
+            self.raised = Some(raised);
+            Cancelled
+        })
     }
 }

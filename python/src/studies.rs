@@ -2,9 +2,8 @@
 
 use crate::errors;
 use crate::scene::Scene;
-use crate::signals::Signals;
+use crate::signals::Watch;
 use crepitus_scene::scene::Precision;
-use crepitus_study::StudyError;
 use crepitus_study::accuracy::points_table::points_table;
 use crepitus_study::accuracy::study::{FULL_REPEATS, FULL_STEPS_S, QUICK_REPEATS, QUICK_STEPS_S};
 use crepitus_study::accuracy::{Plan, StudyScene, run, scenes::standard};
@@ -54,10 +53,9 @@ pub(crate) fn accuracy(
         repeats,
     };
     let study = py.detach(|| {
-        run(&plan, &mut Signals::new()).map_err(|error| match error {
-            StudyError::Watcher(error) => error,
-            other => errors::run(format!("the study failed: {other}")),
-        })
+        let mut watch = Watch::new();
+        run(&plan, &mut watch)
+            .map_err(|error| watch.raised_or(|| errors::run(format!("the study failed: {error}"))))
     })?;
     json(&points_table(&study.points))
 }
@@ -71,10 +69,12 @@ pub(crate) fn effects(py: Python<'_>, scene: &Scene) -> PyResult<String> {
         tolerance: None,
     };
     let study = py.detach(|| {
-        run_effects(&plan, &mut Signals::new()).map_err(|error| match error {
-            EffectsError::Watcher(error) => error,
-            EffectsError::Refused(refusal) => scene.refused(refusal.key(), refusal.to_string()),
-            other => errors::run(format!("{}: {other}", scene.checked.file.display())),
+        let mut watch = Watch::new();
+        run_effects(&plan, &mut watch).map_err(|error| {
+            watch.raised_or(|| match error {
+                EffectsError::Refused(refusal) => scene.refused(refusal.key(), refusal.to_string()),
+                other => errors::run(format!("{}: {other}", scene.checked.file.display())),
+            })
         })
     })?;
     json(&effects_table(&study.rows))

@@ -4,14 +4,10 @@
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Progress;
-use crepitus_study::{StudyError, Watcher};
+use crepitus_study::{Cancelled, StudyError, Watcher};
 
 /// Moves the progress bar, and stops at Ctrl-C.
 pub(crate) struct Watch(Progress);
-
-/// Ctrl-C.
-#[derive(Debug)]
-pub(crate) struct Interrupted;
 
 impl Watch {
     pub(crate) fn new() -> Self {
@@ -21,21 +17,19 @@ impl Watch {
 }
 
 impl Watcher for Watch {
-    type Error = Interrupted;
-
-    fn progress(&mut self, fraction: f64) -> Result<(), Interrupted> {
+    fn progress(&mut self, fraction: f64) -> Result<(), Cancelled> {
         self.0.reached(fraction);
         if interrupt::requested() {
-            return Err(Interrupted);
+            return Err(Cancelled);
         }
         Ok(())
     }
 }
 
 /// The failure of a study.
-pub(crate) fn failed(error: StudyError<Interrupted>) -> Failure {
+pub(crate) fn failed(error: StudyError) -> Failure {
     match error {
-        StudyError::Watcher(Interrupted) => Failure::interrupted(),
+        StudyError::Cancelled(_) => Failure::interrupted(),
         other => Failure::Work(format!("the study failed: {other}")),
     }
 }

@@ -2,9 +2,8 @@
 //! `H01 holds`, `H01 broken: …` or `H01 panics`. `crepitus-faults` runs it on
 //! sources with a planted fault.
 
-use crepitus_study::Watcher;
 use crepitus_study::stability::{Case, Plan, Subject, catalogue, run};
-use std::convert::Infallible;
+use crepitus_study::{Cancelled, Watcher};
 use std::io::Write;
 use std::panic::catch_unwind;
 
@@ -12,9 +11,7 @@ use std::panic::catch_unwind;
 struct Patient;
 
 impl Watcher for Patient {
-    type Error = Infallible;
-
-    fn progress(&mut self, _: f64) -> Result<(), Infallible> {
+    fn progress(&mut self, _: f64) -> Result<(), Cancelled> {
         Ok(())
     }
 }

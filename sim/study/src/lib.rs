@@ -32,4 +32,4 @@ pub mod true_events;
 pub mod vibration;
 pub mod watcher;
 
-pub use watcher::{StudyError, Watcher};
+pub use watcher::{Cancelled, StudyError, Watcher};

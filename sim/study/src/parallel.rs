@@ -1,6 +1,6 @@
 //! Work on all cores, with progress reported from one thread.
 
-use crate::watcher::Watcher;
+use crate::watcher::{Cancelled, Watcher};
 use crepitus_model::Real;
 use std::num::NonZero;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
@@ -40,7 +40,7 @@ impl Meter {
     }
 
     /// Reports the progress to the watcher.
-    pub(crate) fn report<W: Watcher>(&self, watcher: &mut W) -> Result<(), W::Error> {
+    pub(crate) fn report(&self, watcher: &mut dyn Watcher) -> Result<(), Cancelled> {
         let done = f64::from_whole(self.done.load(Ordering::Relaxed));
         watcher
             .progress((done / self.total).min(1.0))
@@ -50,12 +50,12 @@ impl Meter {
 
 /// Applies `work` to each of `items` on all cores; results in the order of the
 /// items.
-pub(crate) fn each<T: Sync, R: Send, W: Watcher>(
+pub(crate) fn each<T: Sync, R: Send>(
     items: &[T],
     meter: &Meter,
-    watcher: &mut W,
+    watcher: &mut dyn Watcher,
     work: impl Fn(&T) -> R + Sync,
-) -> Result<Vec<R>, W::Error> {
+) -> Result<Vec<R>, Cancelled> {
     let cores = thread::available_parallelism().map_or(1, NonZero::get);
     let next = AtomicUsize::new(0);
     thread::scope(|scope| {
@@ -98,11 +98,9 @@ mod tests {
     struct EndsAfter(u32);
 
     impl Watcher for EndsAfter {
-        type Error = ();
-
-        fn progress(&mut self, fraction: f64) -> Result<(), ()> {
+        fn progress(&mut self, fraction: f64) -> Result<(), Cancelled> {
             assert!((0.0..=1.0).contains(&fraction));
-            self.0 = self.0.checked_sub(1).ok_or(())?;
+            self.0 = self.0.checked_sub(1).ok_or(Cancelled)?;
             Ok(())
         }
     }
@@ -136,7 +134,7 @@ mod tests {
             thread::sleep(Duration::from_millis(1));
             done.fetch_add(1, Ordering::Relaxed);
         });
-        assert_eq!(ended, Err(()));
+        assert_eq!(ended, Err(Cancelled));
         assert!(meter.is_stopped() && done.into_inner() < 1000);
     }
 }

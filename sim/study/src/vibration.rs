@@ -17,7 +17,7 @@ pub use chain::Step;
 pub use draws::{Draws, SPREAD, WITHIN};
 
 use crate::parallel::{Meter, each};
-use crate::watcher::Watcher;
+use crate::watcher::{Cancelled, Watcher};
 use crepitus_scene::Scene;
 use crepitus_scene::run::step_count;
 use crepitus_spectrum::cross::{Cross, Likeness};
@@ -129,7 +129,7 @@ impl From<Likeness> for Like {
 /// Why a scene cannot be studied.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum VibrationError<E> {
+pub enum VibrationError {
     /// Something that it needs is missing.
     #[error("the scene has no [effects.{missing}]: {why}")]
     Missing {
@@ -139,18 +139,15 @@ pub enum VibrationError<E> {
         why: &'static str,
     },
     /// The watcher cancelled it.
-    #[error("ended early")]
-    Watcher(E),
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// Runs a plan.
 ///
 /// # Errors
 /// [`VibrationError`] if a scene lacks what is compared, or the watcher cancels.
-pub fn run<W: Watcher>(
-    plan: &Plan,
-    watcher: &mut W,
-) -> Result<VibrationStudy, VibrationError<W::Error>> {
+pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<VibrationStudy, VibrationError> {
     for scene in &plan.scenes {
         check(scene)?;
     }
@@ -164,8 +161,7 @@ pub fn run<W: Watcher>(
     }
     let total: f64 = jobs.iter().map(ticks).sum();
     let meter = Meter::new(total);
-    let found = each(&jobs, &meter, watcher, |scene| record(scene, &meter))
-        .map_err(VibrationError::Watcher)?;
+    let found = each(&jobs, &meter, watcher, |scene| record(scene, &meter))?;
     let mut found = found.into_iter();
     let mut speeds = Vec::new();
     for scene in &plan.scenes {
@@ -236,7 +232,7 @@ fn ticks(scene: &Scene) -> f64 {
 }
 
 /// What is compared has to be there.
-fn check<E>(scene: &Scene) -> Result<(), VibrationError<E>> {
+fn check(scene: &Scene) -> Result<(), VibrationError> {
     for (missing, why) in [
         ("crepitus", "it is the joint's grating that is compared"),
         ("limb", "a bare knee has a leg"),

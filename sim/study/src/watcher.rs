@@ -5,23 +5,25 @@ use crepitus_scene::reference::symptoms::SymptomError;
 
 /// Receives the progress of a study, and may cancel it.
 pub trait Watcher {
-    /// Why it cancels.
-    type Error;
-
     /// Called often; `fraction` of the work is done.
     ///
     /// # Errors
     /// Cancels the study.
-    fn progress(&mut self, fraction: f64) -> Result<(), Self::Error>;
+    fn progress(&mut self, fraction: f64) -> Result<(), Cancelled>;
 }
+
+/// The watcher cancelled the study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("ended early")]
+pub struct Cancelled;
 
 /// Why a study ended early.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum StudyError<E> {
+pub enum StudyError {
     /// The watcher cancelled it.
-    #[error("ended early")]
-    Watcher(E),
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// Settings that do not go together.
     #[error(transparent)]
     Settings(#[from] SettingsError),

@@ -8,7 +8,7 @@ use crepitus_scene::{Overrides, Scene};
 use crepitus_study::effects::results::Outcome;
 use crepitus_study::effects::variant::Change;
 use crepitus_study::effects::{EffectsError, EffectsStudy, Plan, Refusal, run};
-use crepitus_study::watcher::Watcher;
+use crepitus_study::{Cancelled, Watcher};
 use std::convert::Infallible;
 use std::path::Path;
 
@@ -17,9 +17,7 @@ struct Patient {
 }
 
 impl Watcher for Patient {
-    type Error = Infallible;
-
-    fn progress(&mut self, fraction: f64) -> Result<(), Infallible> {
+    fn progress(&mut self, fraction: f64) -> Result<(), Cancelled> {
         assert!(fraction >= self.last && fraction <= 1.0);
         self.last = fraction;
         Ok(())
@@ -310,10 +308,8 @@ fn a_leg_that_nobody_holds_is_refused() {
 fn a_watcher_ends_it_at_any_time() {
     struct Impatient(u32);
     impl Watcher for Impatient {
-        type Error = ();
-
-        fn progress(&mut self, _: f64) -> Result<(), ()> {
-            self.0 = self.0.checked_sub(1).ok_or(())?;
+        fn progress(&mut self, _: f64) -> Result<(), Cancelled> {
+            self.0 = self.0.checked_sub(1).ok_or(Cancelled)?;
             Ok(())
         }
     }
@@ -324,7 +320,7 @@ fn a_watcher_ends_it_at_any_time() {
     for calls in [0, 2, 20, 70] {
         assert!(matches!(
             run(&plan, &mut Impatient(calls)),
-            Err(EffectsError::Watcher(()))
+            Err(EffectsError::Cancelled(_))
         ));
     }
 }

@@ -8,18 +8,15 @@ use crepitus_scene::scene::Precision;
 use crepitus_study::stability::{
     Case, Cell, Failure, Matrix, Plan, Rung, Subject, Verdict, catalogue, criterion, run,
 };
-use crepitus_study::{StudyError, Watcher};
+use crepitus_study::{Cancelled, StudyError, Watcher};
 use std::collections::HashSet;
-use std::convert::Infallible;
 use std::sync::OnceLock;
 
 /// Lets everything run.
 struct Patient;
 
 impl Watcher for Patient {
-    type Error = Infallible;
-
-    fn progress(&mut self, fraction: f64) -> Result<(), Infallible> {
+    fn progress(&mut self, fraction: f64) -> Result<(), Cancelled> {
         assert!((0.0..=1.0).contains(&fraction));
         Ok(())
     }
@@ -170,10 +167,8 @@ fn asks_somebody(case: &Case) {
 struct Impatient(u32);
 
 impl Watcher for Impatient {
-    type Error = &'static str;
-
-    fn progress(&mut self, _: f64) -> Result<(), &'static str> {
-        self.0 = self.0.checked_sub(1).ok_or("enough")?;
+    fn progress(&mut self, _: f64) -> Result<(), Cancelled> {
+        self.0 = self.0.checked_sub(1).ok_or(Cancelled)?;
         Ok(())
     }
 }
@@ -186,6 +181,6 @@ fn a_watcher_ends_a_long_case_at_once() {
     };
     let begun = std::time::Instant::now();
     let ended = run(&plan, &mut Impatient(2));
-    assert!(matches!(ended, Err(StudyError::Watcher("enough"))));
+    assert!(matches!(ended, Err(StudyError::Cancelled(_))));
     assert!(begun.elapsed().as_secs() < 10);
 }

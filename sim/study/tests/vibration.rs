@@ -2,16 +2,14 @@
 
 use crepitus_plant::plant::Coil;
 use crepitus_scene::{Overrides, Scene, Walk};
-use crepitus_study::Watcher;
 use crepitus_study::vibration::{AtSpeed, Measured, Plan, Step, VibrationError, run};
+use crepitus_study::{Cancelled, Watcher};
 use std::path::Path;
 
 struct Patient;
 
 impl Watcher for Patient {
-    type Error = std::convert::Infallible;
-
-    fn progress(&mut self, _: f64) -> Result<(), Self::Error> {
+    fn progress(&mut self, _: f64) -> Result<(), Cancelled> {
         Ok(())
     }
 }

@@ -12,7 +12,7 @@ use crate::cli::{key_and_value, set_once};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::pictures::Pictures;
 use crate::results;
-use crate::studying::{Interrupted, Watch};
+use crate::studying::Watch;
 use clap::Args;
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, Scene, SceneError};
@@ -135,9 +135,9 @@ fn refuse(scene: &Scene, refusal: Refusal) -> Failure {
     })
 }
 
-fn failed(scene: &Scene, error: EffectsError<Interrupted>) -> Failure {
+fn failed(scene: &Scene, error: EffectsError) -> Failure {
     match error {
-        EffectsError::Watcher(Interrupted) => Failure::interrupted(),
+        EffectsError::Cancelled(_) => Failure::interrupted(),
         EffectsError::Refused(refusal) => refuse(scene, refusal),
         other => Failure::Work(format!("{}: {other}", scene.file.display())),
     }

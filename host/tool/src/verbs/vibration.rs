@@ -7,7 +7,7 @@ use crate::cli::{key_and_value, set_once};
 use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
 use crate::results::{self, footer, report_files};
-use crate::studying::{Interrupted, Watch};
+use crate::studying::Watch;
 use clap::{Args, value_parser};
 use crepitus_scene::scene::MotionKind;
 use crepitus_scene::shipped;
@@ -172,9 +172,9 @@ fn text(study: &VibrationStudy) -> StudyText {
     }
 }
 
-fn failed(error: VibrationError<Interrupted>) -> Failure {
+fn failed(error: VibrationError) -> Failure {
     match error {
-        VibrationError::Watcher(Interrupted) => Failure::interrupted(),
+        VibrationError::Cancelled(_) => Failure::interrupted(),
         other => Failure::Input(format!(
             "{other}; crepitus scenes fig8-6-actuator is a scene that has all"
         )),

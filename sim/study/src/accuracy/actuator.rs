@@ -81,11 +81,7 @@ pub fn actuator_table(points: &[ActuatorPoint]) -> Table<'_, ActuatorPoint> {
 ///
 /// # Errors
 /// What the watcher returns.
-pub fn add<W: Watcher>(
-    study: &mut Study,
-    repeats: usize,
-    watcher: &mut W,
-) -> Result<(), StudyError<W::Error>> {
+pub fn add(study: &mut Study, repeats: usize, watcher: &mut dyn Watcher) -> Result<(), StudyError> {
     let torque = torque_nm()?;
     let exact = voltages::<f64>(&torque, 1)?;
     let ratios = [ratio::<f64>(repeats)?, ratio::<f32>(repeats)?];
@@ -106,9 +102,7 @@ pub fn add<W: Watcher>(
                 time_ratio,
             });
         }
-        watcher
-            .progress(whole(done + 1) / whole(STRIDES.len()))
-            .map_err(StudyError::Watcher)?;
+        watcher.progress(whole(done + 1) / whole(STRIDES.len()))?;
     }
     Ok(())
 }

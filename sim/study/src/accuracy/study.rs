@@ -52,7 +52,7 @@ pub struct Plan {
 ///
 /// # Errors
 /// What the watcher returns, or settings that cannot work together.
-pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError<W::Error>> {
+pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<Study, StudyError> {
     let begun = Instant::now();
     let mut study = Study {
         scenes: Vec::new(),
@@ -112,14 +112,14 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Study, StudyError
 
 /// All contestants on one scene at one step, in their order, and the lead in
 /// the reference's slips.
-fn at_step<W: Watcher>(
+fn at_step(
     scene: &StudyScene,
     truth: &[TrueEvent],
     sampling: &Sampling<'_>,
     contestants: &[Contestant],
     plan: &Plan,
-    work: &mut Work<'_, W>,
-) -> Result<(Vec<Point>, Lead), StudyError<W::Error>> {
+    work: &mut Work<'_>,
+) -> Result<(Vec<Point>, Lead), StudyError> {
     let steps = f64::from_whole(sampling.steps());
     let torque = ReferenceTorque::new(scene, sampling, truth, || work.add(0.0))?;
     let held = HeldTorque::new(scene, sampling, truth);
@@ -276,18 +276,16 @@ fn total_work(plan: &Plan) -> f64 {
 }
 
 /// Reports progress to the watcher.
-struct Work<'a, W> {
-    watcher: &'a mut W,
+struct Work<'a> {
+    watcher: &'a mut dyn Watcher,
     total: f64,
     done: f64,
 }
 
-impl<W: Watcher> Work<'_, W> {
-    fn add(&mut self, amount: f64) -> Result<(), StudyError<W::Error>> {
+impl Work<'_> {
+    fn add(&mut self, amount: f64) -> Result<(), StudyError> {
         self.done += amount;
-        self.watcher
-            .progress((self.done / self.total).min(1.0))
-            .map_err(StudyError::Watcher)
+        Ok(self.watcher.progress((self.done / self.total).min(1.0))?)
     }
 }
 
@@ -295,6 +293,7 @@ impl<W: Watcher> Work<'_, W> {
 mod tests {
     use super::*;
     use crate::accuracy::scenes::standard;
+    use crate::watcher::Cancelled;
 
     /// Ends a study after this many calls.
     struct EndsAfter {
@@ -304,14 +303,12 @@ mod tests {
     }
 
     impl Watcher for EndsAfter {
-        type Error = ();
-
-        fn progress(&mut self, fraction: f64) -> Result<(), ()> {
+        fn progress(&mut self, fraction: f64) -> Result<(), Cancelled> {
             assert!(fraction >= self.last && fraction <= 1.0);
             self.last = fraction;
             self.calls += 1;
             if self.calls > self.most {
-                Err(())
+                Err(Cancelled)
             } else {
                 Ok(())
             }
@@ -359,7 +356,7 @@ mod tests {
         let mut watcher = ends_after(3);
         assert!(matches!(
             run(&plan, &mut watcher),
-            Err(StudyError::Watcher(()))
+            Err(StudyError::Cancelled(_))
         ));
         assert_eq!((watcher.calls, watcher.last), (4, 0.0));
     }
@@ -412,7 +409,7 @@ mod tests {
         for most in [0, 3, 40] {
             assert!(matches!(
                 run(&plan(), &mut ends_after(most)),
-                Err(StudyError::Watcher(()))
+                Err(StudyError::Cancelled(_))
             ));
         }
     }

@@ -93,11 +93,11 @@ pub struct SymptomPlan<'a> {
 ///
 /// # Errors
 /// What the watcher returns, or a step that no device has.
-pub fn add<W: Watcher>(
+pub fn add(
     study: &mut Study,
     plan: &SymptomPlan<'_>,
-    watcher: &mut W,
-) -> Result<(), StudyError<W::Error>> {
+    watcher: &mut dyn Watcher,
+) -> Result<(), StudyError> {
     let all = Given::all();
     let steps_s = falling(plan.steps_s);
     // A shorter step is more work.
@@ -109,9 +109,7 @@ pub fn add<W: Watcher>(
         // The memory of a reflex is too short for its delay in steps below 25 µs.
         let has_a_law = |given: &&Given| given.settings().laws::<f64>(&timing_of(step_s)).is_ok();
         let symptoms: Vec<Given> = all.iter().filter(has_a_law).cloned().collect();
-        let costs = timing::time(&symptoms, plan, step_s, || {
-            watcher.progress(done / total).map_err(StudyError::Watcher)
-        })?;
+        let costs = timing::time(&symptoms, plan, step_s, || watcher.progress(done / total))?;
         for (n, given) in (0_u32..).zip(&symptoms) {
             let errors = errors(given, plan.precisions, step_s)?;
             let here = errors.iter().zip(plan.precisions);
@@ -126,9 +124,7 @@ pub fn add<W: Watcher>(
             }));
             let share = f64::from(n + 1) / 10.0_f64.max(f64::from(n + 1));
             let now = (done + work(step_s) * share) / total;
-            watcher
-                .progress(now.min(1.0))
-                .map_err(StudyError::Watcher)?;
+            watcher.progress(now.min(1.0))?;
         }
         done += work(step_s);
     }
@@ -144,11 +140,7 @@ pub fn add<W: Watcher>(
 }
 
 /// The errors on all motions together, in each precision.
-fn errors<E>(
-    given: &Given,
-    precisions: &[Precision],
-    step_s: f64,
-) -> Result<Vec<Errors>, StudyError<E>> {
+fn errors(given: &Given, precisions: &[Precision], step_s: f64) -> Result<Vec<Errors>, StudyError> {
     let mut all = vec![Errors::default(); precisions.len()];
     for (_, hand, duration_s) in motions() {
         let motion = hand.motion();

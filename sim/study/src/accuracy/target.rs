@@ -90,16 +90,16 @@ pub struct Row {
 /// Why there is no result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum TargetError<T, W> {
+pub enum TargetError<T> {
     /// The target failed.
     #[error("the target: {0}")]
     Target(T),
     /// The study ended early.
     #[error(transparent)]
-    Study(#[from] StudyError<W>),
+    Study(#[from] StudyError),
 }
 
-impl<T, W> From<SettingsError> for TargetError<T, W> {
+impl<T> From<SettingsError> for TargetError<T> {
     fn from(error: SettingsError) -> Self {
         Self::Study(error.into())
     }
@@ -110,13 +110,13 @@ impl<T, W> From<SettingsError> for TargetError<T, W> {
 ///
 /// # Errors
 /// Errors of the target or the watcher, or contradictory settings.
-pub fn add<T, W: Watcher>(
+pub fn add<T>(
     study: &mut Study,
     scenes: &[StudyScene],
     lengths: Lengths,
     mut on_target: impl FnMut(&Plan, &[Input]) -> Result<Vec<Call>, T>,
-    watcher: &mut W,
-) -> Result<(), TargetError<T, W::Error>> {
+    watcher: &mut dyn Watcher,
+) -> Result<(), TargetError<T>> {
     let mut on = OnTarget {
         label: LABEL,
         tick_cycles: TICK_CYCLES,
@@ -139,8 +139,9 @@ pub fn add<T, W: Watcher>(
                 note(study, scene, solver.name(), &cost);
             }
             done += each;
-            let progress = watcher.progress(f64::min(done, 1.0));
-            progress.map_err(StudyError::Watcher)?;
+            watcher
+                .progress(f64::min(done, 1.0))
+                .map_err(StudyError::from)?;
         }
         on.steps += cost_of_subject.all.calls;
         let frequency = frequency_error(study, *subject);
@@ -261,15 +262,14 @@ mod tests {
     use super::*;
     use crate::accuracy::scenes::standard;
     use crate::accuracy::study;
+    use crate::watcher::Cancelled;
     use crepitus_ladder::exchange::Kind;
     use crepitus_model::render::effects::SPECS;
 
     struct Nobody;
 
     impl Watcher for Nobody {
-        type Error = ();
-
-        fn progress(&mut self, fraction: f64) -> Result<(), ()> {
+        fn progress(&mut self, fraction: f64) -> Result<(), Cancelled> {
             assert!(fraction <= 1.0);
             Ok(())
         }

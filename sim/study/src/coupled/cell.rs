@@ -2,6 +2,7 @@
 
 use super::setting::{DURATION_S, Setting, TICK_S};
 use crate::parallel::Meter;
+use crate::watcher::Cancelled;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_scene::run::{Observer, RunError, columns, run};
 use serde::Serialize;
@@ -87,7 +88,7 @@ pub(super) fn run_cell(setting: &Setting, meter: &Meter) -> Result<Option<Cell>,
     };
     match run(&scene, &mut observer) {
         Ok(_) => {}
-        Err(RunError::Observer(Stopped)) => return Ok(None),
+        Err(RunError::Observer(Cancelled)) => return Ok(None),
         Err(other) => return Err(other.to_string()),
     }
     meter.add(1);
@@ -141,14 +142,10 @@ struct RippleObserver<'a> {
     torque_nm: Span,
 }
 
-#[derive(Debug, thiserror::Error)]
-#[error("stopped")]
-struct Stopped;
-
 impl Observer for RippleObserver<'_> {
-    type Error = Stopped;
+    type Error = Cancelled;
 
-    fn row(&mut self, values: &[f64]) -> Result<(), Stopped> {
+    fn row(&mut self, values: &[f64]) -> Result<(), Cancelled> {
         let (Some(time_s), Some(angle_rad), Some(torque_nm)) = (
             values.first(),
             values.get(self.angle),
@@ -166,9 +163,9 @@ impl Observer for RippleObserver<'_> {
         Ok(())
     }
 
-    fn progress(&mut self, _: f64) -> Result<(), Stopped> {
+    fn progress(&mut self, _: f64) -> Result<(), Cancelled> {
         if self.meter.is_stopped() {
-            return Err(Stopped);
+            return Err(Cancelled);
         }
         Ok(())
     }

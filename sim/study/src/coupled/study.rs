@@ -4,7 +4,7 @@ use super::cell::{Cell, Verdict, run_cell};
 use super::criteria::Criteria;
 use super::setting::{DAMPINGS, Extra, GEARS, LAGS, STIFFNESSES, Setting};
 use crate::parallel::{Meter, each};
-use crate::watcher::Watcher;
+use crate::watcher::{Cancelled, Watcher};
 use crepitus_model::Real;
 use crepitus_scene::preset::joints;
 use std::time::Instant;
@@ -60,10 +60,10 @@ pub struct CoupledStudy {
 
 /// Why a study has no result.
 #[derive(Debug, thiserror::Error)]
-pub enum CoupledError<E> {
+pub enum CoupledError {
     /// The watcher cancelled it.
-    #[error("ended early")]
-    Watcher(E),
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// A run failed.
     #[error("{0}")]
     Run(String),
@@ -73,7 +73,7 @@ pub enum CoupledError<E> {
 ///
 /// # Errors
 /// What the watcher returns.
-pub fn run<W: Watcher>(watcher: &mut W) -> Result<CoupledStudy, CoupledError<W::Error>> {
+pub fn run(watcher: &mut dyn Watcher) -> Result<CoupledStudy, CoupledError> {
     let begun = Instant::now();
     let map = map();
     let (presets, extras) = (presets(), extras());
@@ -85,8 +85,7 @@ pub fn run<W: Watcher>(watcher: &mut W) -> Result<CoupledStudy, CoupledError<W::
     let meter = Meter::new(f64::from_whole(count));
     let ran = each(&settings, &meter, watcher, |setting| {
         run_cell(setting, &meter)
-    })
-    .map_err(CoupledError::Watcher)?;
+    })?;
     let mut cells = Vec::with_capacity(ran.len());
     for cell in ran {
         cells.extend(cell.map_err(CoupledError::Run)?);

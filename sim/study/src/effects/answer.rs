@@ -8,7 +8,7 @@ use super::study::{TIMINGS, WholeRun};
 use super::tolerance::{Criterion, Tolerance};
 use super::variant::states;
 use crate::parallel::{Meter, each};
-use crate::watcher::Watcher;
+use crate::watcher::{Cancelled, Watcher};
 use crepitus_model::Real;
 use crepitus_plant::effect::Effect;
 use crepitus_scene::Scene;
@@ -96,11 +96,11 @@ fn needs(effects: &[&'static Effect]) -> Vec<Set> {
 
 /// The answer; `None` if not even the whole scene is within, which only a scene
 /// with irreproducible runs could cause.
-pub(super) fn answer<W: Watcher>(
+pub(super) fn answer(
     question: &Question<'_>,
     meter: &Meter,
-    watcher: &mut W,
-) -> Result<Option<Answer>, W::Error> {
+    watcher: &mut dyn Watcher,
+) -> Result<Option<Answer>, Cancelled> {
     let Question {
         scene, tolerance, ..
     } = *question;
@@ -214,13 +214,13 @@ impl Question<'_> {
     /// The time of a step of the scene, and the sets with theirs; `None`
     /// without sets.
     #[expect(clippy::type_complexity, reason = "used once")]
-    fn timed<W: Watcher>(
+    fn timed(
         &self,
         effects: &[&'static Effect],
         found: &[(Set, Difference)],
         meter: &Meter,
-        watcher: &mut W,
-    ) -> Result<Option<(f64, Vec<(Set, Subset)>)>, W::Error> {
+        watcher: &mut dyn Watcher,
+    ) -> Result<Option<(f64, Vec<(Set, Subset)>)>, Cancelled> {
         let mut scenes = vec![self.scene.clone()];
         scenes.extend(
             found

@@ -7,7 +7,7 @@ mod signals;
 
 use crate::parallel::{Meter, each};
 use crate::stability::story::Line;
-use crate::watcher::Watcher;
+use crate::watcher::{Cancelled, Watcher};
 use crepitus_plant::effect::{Effect, Part};
 use crepitus_scene::Scene;
 use serde::Serialize;
@@ -76,11 +76,11 @@ pub struct Measured {
 ///
 /// # Errors
 /// What the watcher returns.
-pub(super) fn build_up<W: Watcher>(
+pub(super) fn build_up(
     scene: &Scene,
     meter: &Meter,
-    watcher: &mut W,
-) -> Result<Option<BuildUp>, W::Error> {
+    watcher: &mut dyn Watcher,
+) -> Result<Option<BuildUp>, Cancelled> {
     if scene.crepitus.is_none() || !scene.is_coupled() {
         return Ok(None);
     }
@@ -144,9 +144,7 @@ mod tests {
     struct Patient;
 
     impl Watcher for Patient {
-        type Error = std::convert::Infallible;
-
-        fn progress(&mut self, _: f64) -> Result<(), Self::Error> {
+        fn progress(&mut self, _: f64) -> Result<(), Cancelled> {
             Ok(())
         }
     }
@@ -158,8 +156,7 @@ mod tests {
                 .to_owned();
         text.extend(effects.iter().map(|e| format!("[effects.{e}]\n")));
         let scene = Scene::parse(Path::new("steady.toml"), &text, &Overrides::default()).unwrap();
-        let Ok(built) = build_up(&scene, &Meter::new(1.0), &mut Patient);
-        built
+        build_up(&scene, &Meter::new(1.0), &mut Patient).expect("nobody cancels")
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::tolerance::Tolerance;
 use super::variant::{Change, Variant, states, variants};
 use super::window::{Candidate, Profile, SHOWN, shown_torques};
 use crate::parallel::{Meter, each};
-use crate::watcher::Watcher;
+use crate::watcher::{Cancelled, Watcher};
 use crepitus_model::Real;
 use crepitus_scene::Scene;
 use crepitus_scene::run::{AddedTime, StepTime, step_count, step_times};
@@ -32,10 +32,10 @@ pub struct Plan {
 /// Why a study has no result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum EffectsError<E> {
+pub enum EffectsError {
     /// The watcher cancelled it.
-    #[error("ended early")]
-    Watcher(E),
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// The scene cannot be studied.
     #[error("{0}")]
     Refused(Refusal),
@@ -55,10 +55,7 @@ pub(super) struct WholeRun {
 /// # Errors
 /// What the watcher returns, or why the scene cannot be studied. A failed
 /// variant is a row with the reason.
-pub fn run<W: Watcher>(
-    plan: &Plan,
-    watcher: &mut W,
-) -> Result<EffectsStudy, EffectsError<W::Error>> {
+pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<EffectsStudy, EffectsError> {
     let begun = Instant::now();
     let scene = &plan.scene;
     if let Some(refusal) = refusal(scene) {
@@ -69,10 +66,8 @@ pub fn run<W: Watcher>(
     let (whole, own, warnings) = whole(scene, &meter, watcher)?;
     let variant_runs = each(&variants, &meter, watcher, |variant| {
         run_variant(variant, &whole, &meter)
-    })
-    .map_err(EffectsError::Watcher)?;
-    let (scene_time, times) =
-        times(scene, &variants, &meter, watcher).map_err(EffectsError::Watcher)?;
+    })?;
+    let (scene_time, times) = times(scene, &variants, &meter, watcher)?;
     let mut rows = vec![Row {
         change: Change::Scene,
         effect: "",
@@ -91,11 +86,10 @@ pub fn run<W: Watcher>(
             &rows[0],
         ));
     }
-    let answer = find(plan, &whole, &meter, watcher).map_err(EffectsError::Watcher)?;
+    let answer = find(plan, &whole, &meter, watcher)?;
     let candidates = candidates(&variants, &variant_runs, &rows[1..]);
-    let hand_torque =
-        shown_torques(&whole, scene, candidates, &meter, watcher).map_err(EffectsError::Watcher)?;
-    let built = build_up(scene, &meter, watcher).map_err(EffectsError::Watcher)?;
+    let hand_torque = shown_torques(&whole, scene, candidates, &meter, watcher)?;
+    let built = build_up(scene, &meter, watcher)?;
     let (build_up, build_up_torques) =
         built.map_or_else(Default::default, |b| (b.rungs, b.torques));
     Ok(EffectsStudy {
@@ -127,11 +121,11 @@ fn work(plan: &Plan, variants: usize) -> f64 {
 }
 
 /// The scene's own run.
-fn whole<W: Watcher>(
+fn whole(
     scene: &Scene,
     meter: &Meter,
-    watcher: &mut W,
-) -> Result<(WholeRun, Ran, Vec<String>), EffectsError<W::Error>> {
+    watcher: &mut dyn Watcher,
+) -> Result<(WholeRun, Ran, Vec<String>), EffectsError> {
     let runs = each(std::slice::from_ref(scene), meter, watcher, |scene| {
         let count = step_count(scene);
         let mut signal = Vec::with_capacity(usize::try_from(count).unwrap_or(0));
@@ -142,8 +136,7 @@ fn whole<W: Watcher>(
             true
         })?;
         Ok((signal, statistics.finish(), felt))
-    })
-    .map_err(EffectsError::Watcher)?;
+    })?;
     match runs.into_iter().next() {
         Some(Ok((signal, torque, felt))) => {
             let events = felt.events;
@@ -198,12 +191,12 @@ fn run_variant(variant: &Variant, whole: &WholeRun, meter: &Meter) -> Result<Var
 }
 
 /// The times of the scene and of its variants; unknown for an impossible variant.
-fn times<W: Watcher>(
+fn times(
     scene: &Scene,
     variants: &[Variant],
     meter: &Meter,
-    watcher: &mut W,
-) -> Result<(StepTime, Vec<StepTime>), W::Error> {
+    watcher: &mut dyn Watcher,
+) -> Result<(StepTime, Vec<StepTime>), Cancelled> {
     let mut scenes = vec![scene.clone()];
     scenes.extend(variants.iter().filter_map(|v| v.scene.clone()));
     let mut times = step_times(&scenes, TIMINGS, || meter.report(watcher))?.into_iter();
@@ -271,12 +264,12 @@ fn signed(a: u64, b: u64) -> i64 {
     if a < b { -size } else { size }
 }
 
-fn find<W: Watcher>(
+fn find(
     plan: &Plan,
     whole: &WholeRun,
     meter: &Meter,
-    watcher: &mut W,
-) -> Result<Option<Answer>, W::Error> {
+    watcher: &mut dyn Watcher,
+) -> Result<Option<Answer>, Cancelled> {
     match &plan.tolerance {
         None => Ok(None),
         Some(tolerance) => answer(

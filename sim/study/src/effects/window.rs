@@ -11,7 +11,7 @@ use super::study::WholeRun;
 use super::variant::Change;
 use crate::parallel::{Meter, each};
 use crate::stability::story::Line;
-use crate::watcher::Watcher;
+use crate::watcher::{Cancelled, Watcher};
 use crepitus_model::Real;
 use crepitus_scene::Scene;
 use trend::Trend;
@@ -67,13 +67,13 @@ pub(super) struct Candidate<'a> {
 }
 
 /// The torques of those that differ most; none if none differs.
-pub(super) fn shown_torques<W: Watcher>(
+pub(super) fn shown_torques(
     whole: &WholeRun,
     scene: &Scene,
     mut candidates: Vec<Candidate<'_>>,
     meter: &Meter,
-    watcher: &mut W,
-) -> Result<Option<HandTorque>, W::Error> {
+    watcher: &mut dyn Watcher,
+) -> Result<Option<HandTorque>, Cancelled> {
     candidates.retain(|c| c.rms_nm > 0.0);
     candidates.sort_by(|a, b| b.rms_nm.total_cmp(&a.rms_nm));
     candidates.truncate(SHOWN);

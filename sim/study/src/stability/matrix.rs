@@ -5,12 +5,12 @@ use super::criterion::Criterion;
 use super::input::Input;
 use super::judge::{Evidence, common, judge, remark};
 use super::observation::Observation;
-use super::observe::{Stopped, observe};
+use super::observe::observe;
 use super::subject::Subject;
 use super::verdict::{Failure, Margin, Verdict};
 use crate::sampling::Sampling;
 use crate::true_events::{TrueEvent, true_events};
-use crate::watcher::{StudyError, Watcher};
+use crate::watcher::{Cancelled, StudyError, Watcher};
 use crepitus_model::{Real, Settings, SettingsError};
 use std::rc::Rc;
 use std::time::Instant;
@@ -79,7 +79,7 @@ impl Matrix {
 ///
 /// # Errors
 /// What the watcher returns, or a trial whose settings are refused.
-pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Matrix, StudyError<W::Error>> {
+pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<Matrix, StudyError> {
     let begun = Instant::now();
     let mut work = Work {
         watcher,
@@ -113,12 +113,12 @@ pub fn run<W: Watcher>(plan: &Plan, watcher: &mut W) -> Result<Matrix, StudyErro
 }
 
 /// Verdict of a subject in the worst of some trials, with that trial.
-fn worst_verdict<W: Watcher>(
+fn worst_verdict(
     subject: Subject,
     trials: &[Trial],
     truths: &mut Truths,
-    work: &mut Work<'_, W>,
-) -> Result<(Verdict, String), StudyError<W::Error>> {
+    work: &mut Work<'_>,
+) -> Result<(Verdict, String), StudyError> {
     let mut worst: Option<(Verdict, String)> = None;
     let mut add = |verdict: Verdict, detail: String| {
         if worst.as_ref().is_none_or(|(w, _)| rank(&verdict) > rank(w)) {
@@ -236,43 +236,32 @@ impl Truths {
 }
 
 /// Reports progress to the watcher.
-struct Work<'a, W: Watcher> {
-    watcher: &'a mut W,
+struct Work<'a> {
+    watcher: &'a mut dyn Watcher,
     total: f64,
     done: f64,
 }
 
-impl<W: Watcher> Work<'_, W> {
+impl Work<'_> {
     fn observe(
         &mut self,
         subject: Subject,
         settings: &Settings,
         input: &Input,
         late_s: f64,
-    ) -> Result<Observation, StudyError<W::Error>> {
+    ) -> Result<Observation, StudyError> {
         // A run that overflows ends early: all its work counts as done.
         let after = self.done + work_of(input);
-        let mut reason = None;
         let seen = observe(subject, settings, input, late_s, &mut |steps| {
             self.done += steps;
-            self.report_progress().map_err(|why| {
-                reason = Some(why);
-                Stopped
-            })
-        });
-        let seen = match (seen, reason) {
-            (_, Some(why)) => return Err(StudyError::Watcher(why)),
-            (Err(StudyError::Settings(error)), None) => return Err(error.into()),
-            (Err(StudyError::Symptom(error)), None) => return Err(error.into()),
-            (Err(StudyError::Watcher(Stopped)), None) => unreachable!("it has a reason"),
-            (Ok(seen), None) => seen,
-        };
+            self.report_progress()
+        })?;
         self.done = after;
-        self.report_progress().map_err(StudyError::Watcher)?;
+        self.report_progress()?;
         Ok(seen)
     }
 
-    fn report_progress(&mut self) -> Result<(), W::Error> {
+    fn report_progress(&mut self) -> Result<(), Cancelled> {
         self.watcher.progress((self.done / self.total).min(1.0))
     }
 }

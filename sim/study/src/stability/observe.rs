@@ -13,7 +13,7 @@ use super::subject::{Rung, Subject};
 use super::without_steps::without_steps;
 use crate::sampling::{CHUNK_STEPS, Sampling};
 use crate::true_events::TimedEvent;
-use crate::watcher::StudyError;
+use crate::watcher::{Cancelled, StudyError};
 use crepitus_model::solver::Solver;
 use crepitus_model::{
     Convention, EVENTS_PER_STEP, Event, EventKind, Parameters, Phase, Real, Settings, ShaftStep,
@@ -40,8 +40,8 @@ pub(super) fn observe(
     settings: &Settings,
     input: &Input,
     late_s: f64,
-    poll: &mut dyn FnMut(f64) -> Result<(), Stopped>,
-) -> Result<Observation, StudyError<Stopped>> {
+    poll: &mut dyn FnMut(f64) -> Result<(), Cancelled>,
+) -> Result<Observation, StudyError> {
     if let Input::Refusals(attempts) = input {
         return Ok(attempt(subject, attempts));
     }
@@ -75,8 +75,8 @@ fn run<F: Precise>(
     settings: &Settings,
     input: &Input,
     late_s: f64,
-    poll: &mut dyn FnMut(f64) -> Result<(), Stopped>,
-) -> Result<Observation, StudyError<Stopped>> {
+    poll: &mut dyn FnMut(f64) -> Result<(), Cancelled>,
+) -> Result<Observation, StudyError> {
     let settings = settings.validate()?;
     let (duration_s, step_s) = input.duration_and_step_s().unwrap_or((0.0, 1.0));
     let motion = motion(input);
@@ -127,9 +127,7 @@ fn run<F: Precise>(
     };
     let omega = F::from_f64(omega_rad_s);
     let joint = AnyJoint::new(&settings, solver, step_s, omega)?;
-    observer
-        .run_behind_check_if_needed(joint)
-        .map_err(StudyError::Watcher)
+    Ok(observer.run_behind_check_if_needed(joint)?)
 }
 
 /// Tries to build each joint.
@@ -152,9 +150,6 @@ fn attempt(subject: Subject, attempts: &[Attempt]) -> Observation {
     }
 }
 
-/// `poll` cancelled the run.
-pub(super) struct Stopped;
-
 /// Observes a joint after every step.
 struct StepObserver<'a, F> {
     source: Box<dyn Source<F> + 'a>,
@@ -166,11 +161,11 @@ struct StepObserver<'a, F> {
     late_step: f64,
     /// Velocity at the start, rad/s, if the input needs the check.
     guard_from_rad_s: Option<F>,
-    poll: &'a mut dyn FnMut(f64) -> Result<(), Stopped>,
+    poll: &'a mut dyn FnMut(f64) -> Result<(), Cancelled>,
 }
 
 impl<F: Real> StepObserver<'_, F> {
-    fn run_behind_check_if_needed(self, joint: AnyJoint<F>) -> Result<Observation, Stopped> {
+    fn run_behind_check_if_needed(self, joint: AnyJoint<F>) -> Result<Observation, Cancelled> {
         match self.guard_from_rad_s {
             Some(omega_rad_s) => {
                 let step_s = self.sampling.step_s();
@@ -180,7 +175,7 @@ impl<F: Real> StepObserver<'_, F> {
         }
     }
 
-    fn run<J: StickSlip<F>>(mut self, mut joint: J) -> Result<Observation, Stopped> {
+    fn run<J: StickSlip<F>>(mut self, mut joint: J) -> Result<Observation, Cancelled> {
         let first_torque_nm = joint.torque_nm().to_f64();
         let mut seen = Observation {
             step_s: self.sampling.step_s(),

@@ -5,7 +5,7 @@ mod energy;
 
 use super::input::{RefusedSymptoms, SymptomRun};
 use super::observation::{Observation, SymptomsSeen};
-use super::observe::{Stopped, bits};
+use super::observe::bits;
 use super::parameter_changes::SLEW_NM_PER_S;
 use super::subject::{Rung, Subject};
 use crate::sampling::Sampling;
@@ -34,7 +34,7 @@ pub(super) fn observe(
     subject: Subject,
     run: &SymptomRun,
     late_s: f64,
-) -> Result<Observation, StudyError<Stopped>> {
+) -> Result<Observation, StudyError> {
     let motion = run.hand.motion();
     let sampling = Sampling::new(&motion, run.duration_s, run.step_s);
     let here = Here {
@@ -82,7 +82,7 @@ struct Here<'a> {
 }
 
 impl Here<'_> {
-    fn by_reference(&self) -> Result<Observation, StudyError<Stopped>> {
+    fn by_reference(&self) -> Result<Observation, StudyError> {
         let mut seen = self.begun();
         let Some(given) = self.run.symptoms.first() else {
             return Ok(seen);

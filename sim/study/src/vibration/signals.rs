@@ -2,6 +2,7 @@
 
 use super::{Coil, SETTLES};
 use crate::parallel::Meter;
+use crate::watcher::Cancelled;
 use crepitus_model::Real;
 use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns, step_count};
 use crepitus_scene::{Scene, Walk};
@@ -22,11 +23,6 @@ pub(super) struct Kept {
     pub(super) coil: Option<Coil>,
 }
 
-/// The study was cancelled.
-#[derive(Debug, thiserror::Error)]
-#[error("ended early")]
-struct Stopped;
-
 struct Recorder<'a> {
     places: [Option<usize>; 5],
     rows: [Vec<f64>; 5],
@@ -42,18 +38,18 @@ const COLUMNS: [&str; 5] = [
 ];
 
 impl Observer for Recorder<'_> {
-    type Error = Stopped;
+    type Error = Cancelled;
 
-    fn row(&mut self, values: &[f64]) -> Result<(), Stopped> {
+    fn row(&mut self, values: &[f64]) -> Result<(), Cancelled> {
         for (place, row) in self.places.iter().zip(&mut self.rows) {
             row.extend(place.and_then(|place| values.get(place)));
         }
         Ok(())
     }
 
-    fn progress(&mut self, _: f64) -> Result<(), Stopped> {
+    fn progress(&mut self, _: f64) -> Result<(), Cancelled> {
         if self.meter.is_stopped() {
-            return Err(Stopped);
+            return Err(Cancelled);
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! What the ladder costs on the target: `--target`.
 
 use crate::failure::Failure;
-use crate::studying::{Interrupted, Watch};
+use crate::studying::Watch;
 use crepitus_emulator::on_target::{self, OnTarget};
 use crepitus_study::accuracy::target::inputs::Lengths;
 use crepitus_study::accuracy::target::table::target_table;
@@ -27,7 +27,7 @@ pub(super) fn add(
         Lengths::FULL
     };
     target::add(study, scenes, lengths, ladder, &mut Watch::new()).map_err(
-        |error: TargetError<String, Interrupted>| match error {
+        |error: TargetError<String>| match error {
             TargetError::Study(error) => crate::studying::failed(error),
             other => Failure::Work(format!("--target: {other}")),
         },

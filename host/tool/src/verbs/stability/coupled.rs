@@ -55,7 +55,7 @@ fn as_rows<S: Serializer>(joints: &[Margin], serializer: S) -> Result<S::Ok, S::
 pub(super) fn coupled(out: &Path, pictures: &Pictures, as_json: bool) -> Result<(), Failure> {
     let folder = results::folder(out)?;
     let study = run(&mut Watch::new()).map_err(|error| match error {
-        CoupledError::Watcher(_) => Failure::interrupted(),
+        CoupledError::Cancelled(_) => Failure::interrupted(),
         CoupledError::Run(why) => Failure::Work(format!("the study failed: {why}")),
     })?;
     let summary = summary(&study);

@@ -4,14 +4,13 @@ use crate::accuracy::symptoms::table::symptoms_table;
 use crate::symptoms::event::own;
 use crate::symptoms::follow::follow;
 use crate::symptoms::truth::true_events;
+use crate::watcher::Cancelled;
 use std::collections::BTreeSet;
 
 struct Patient(f64);
 
 impl Watcher for Patient {
-    type Error = ();
-
-    fn progress(&mut self, fraction: f64) -> Result<(), ()> {
+    fn progress(&mut self, fraction: f64) -> Result<(), Cancelled> {
         assert!(fraction >= self.0 && fraction <= 1.0, "{fraction}");
         self.0 = fraction;
         Ok(())

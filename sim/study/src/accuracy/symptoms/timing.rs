@@ -8,7 +8,7 @@ use crate::accuracy::timing::{Cost, LEAST_STEPS, MOST_STEPS, Track, cost};
 use crate::sampling::{CHUNK_STEPS, Sampling};
 use crate::symptoms::Given;
 use crate::symptoms::follow::{tick, timing};
-use crate::watcher::StudyError;
+use crate::watcher::{Cancelled, StudyError};
 use crepitus_model::render::effects::{DeviceEffect, LawVisitor};
 use crepitus_model::render::position::{Position, Scale, Sight};
 use crepitus_model::solver::Solver;
@@ -58,12 +58,12 @@ impl Costs {
 }
 
 /// Times all in turns; `after_each` is called after every turn and may cancel.
-pub(super) fn time<E>(
+pub(super) fn time(
     symptoms: &[Given],
     plan: &SymptomPlan<'_>,
     step_s: f64,
-    mut after_each: impl FnMut() -> Result<(), StudyError<E>>,
-) -> Result<Costs, StudyError<E>> {
+    mut after_each: impl FnMut() -> Result<(), Cancelled>,
+) -> Result<Costs, StudyError> {
     let crepitus = scenes::standard()?
         .into_iter()
         .find(|s| s.name == CREPITUS && s.settings.convention == Convention::Frozen);

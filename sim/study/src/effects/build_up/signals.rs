@@ -2,6 +2,7 @@
 
 use super::Measured;
 use crate::parallel::Meter;
+use crate::watcher::Cancelled;
 use crepitus_model::Real;
 use crepitus_scene::Scene;
 use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns, step_count};
@@ -40,20 +41,15 @@ struct Places {
     hand: usize,
 }
 
-/// The study was cancelled.
-#[derive(Debug, thiserror::Error)]
-#[error("ended early")]
-struct Stopped;
-
 struct SignalObserver<'a> {
     signals: Signals,
     meter: &'a Meter,
 }
 
 impl Observer for SignalObserver<'_> {
-    type Error = Stopped;
+    type Error = Cancelled;
 
-    fn row(&mut self, values: &[f64]) -> Result<(), Stopped> {
+    fn row(&mut self, values: &[f64]) -> Result<(), Cancelled> {
         let s = &mut self.signals;
         if values[0] >= s.from_s {
             s.model_nm.push(values[s.places.model]);
@@ -65,7 +61,7 @@ impl Observer for SignalObserver<'_> {
         Ok(())
     }
 
-    fn event(&mut self, event: &EventRecord) -> Result<(), Stopped> {
+    fn event(&mut self, event: &EventRecord) -> Result<(), Cancelled> {
         let s = &mut self.signals;
         match event.kind {
             EventKind::Stick => s.last_stick_s = Some(event.time_s),
@@ -79,9 +75,9 @@ impl Observer for SignalObserver<'_> {
         Ok(())
     }
 
-    fn progress(&mut self, _: f64) -> Result<(), Stopped> {
+    fn progress(&mut self, _: f64) -> Result<(), Cancelled> {
         if self.meter.is_stopped() {
-            return Err(Stopped);
+            return Err(Cancelled);
         }
         Ok(())
     }
