@@ -190,6 +190,13 @@ fn pseudo_terminal(path: &str) -> Option<std::os::fd::OwnedFd> {
     is_one.then(|| rustix::fs::open(path, flags, Mode::empty()).ok())?
 }
 
+/// Whether the system has this port.
+fn is_listed(path: &str) -> bool {
+    let name = path.trim_start_matches(r"\\.\");
+    let ports = serialport::available_ports().unwrap_or_default();
+    (ports.iter()).any(|port| port.port_name.eq_ignore_ascii_case(name))
+}
+
 /// Converts an error of opening a port.
 fn why(path: &str, error: &serialport::Error) -> TransportError {
     let port = path.to_owned();
@@ -198,8 +205,8 @@ fn why(path: &str, error: &serialport::Error) -> TransportError {
             port,
             group: holder::group_of(path).unwrap_or_else(|| "dialout".to_owned()),
         },
-        // On Unix the library reports a locked port like this.
-        ErrorKind::NoDevice if cfg!(unix) => TransportError::Busy {
+        // On Unix the library reports a locked port like this, on Windows one that is open, too.
+        ErrorKind::NoDevice if cfg!(unix) || is_listed(path) => TransportError::Busy {
             port,
             holder: holder::holder_of(path),
         },

@@ -13,10 +13,9 @@ use crate::frames::Frames;
 use crate::left_open::requests_in;
 use crate::member::{Chunk, Member};
 use crate::note::Note;
+use crate::socket::{Arrival, Listener, Stream};
 use crepitus_client::{Transport, TransportError};
 use crepitus_protocol::Decoder;
-use interprocess::local_socket::traits::ListenerExt;
-use interprocess::local_socket::{Listener, Stream};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read, Write};
@@ -180,33 +179,49 @@ impl State {
     }
 
     fn accept(self: &Arc<Self>, listener: &Listener) {
-        for (number, stream) in (0..).zip(listener.incoming()) {
+        for number in 0.. {
+            let arrived = listener.accept();
             if self.is_over() {
                 return;
             }
-            match stream {
-                Ok(stream) => self.admit(number, stream),
+            match arrived {
+                Ok(arrival) => {
+                    let state = self.clone();
+                    // As many threads as the system gives: this program is not served, the others are.
+                    let _ = Builder::new().spawn(move || state.serve(number, arrival));
+                }
                 // Too many open files: some will be closed.
                 Err(_) => thread::sleep(LOOK_EVERY),
             }
         }
     }
 
-    fn admit(self: &Arc<Self>, number: u64, stream: Stream) {
+    /// Serves a program until it closes its end.
+    fn serve(&self, number: u64, arrival: Arrival) {
+        let Ok(stream) = arrival.enter() else {
+            return;
+        };
         let stream = Arc::new(stream);
         let for_writing = stream.clone();
         let (outbox, inbox) = sync_channel(OUTBOX);
-        self.members().insert(number, Member::new(outbox));
-        let writer = Builder::new().spawn(move || write_all(&for_writing, &inbox));
-        let state = self.clone();
-        let reader = Builder::new().spawn(move || {
-            state.read_all(number, &stream);
-            state.dismiss(number);
-        });
-        if writer.is_err() || reader.is_err() {
-            // As many threads as the system gives: this program is not served, the others are.
-            self.dismiss(number);
+        if !self.admit(number, Member::new(outbox)) {
+            return;
         }
+        let writer = Builder::new().spawn(move || write_all(&for_writing, &inbox));
+        if writer.is_ok() {
+            self.read_all(number, &stream);
+        }
+        self.dismiss(number);
+    }
+
+    /// False when the hub has ended.
+    fn admit(&self, number: u64, member: Member) -> bool {
+        let mut members = self.members();
+        if self.is_over() {
+            return false;
+        }
+        members.insert(number, member);
+        true
     }
 
     /// Frames of a program to the port, until it closes its end.
@@ -305,8 +320,7 @@ fn write_all(mut stream: &Stream, inbox: &Receiver<Chunk>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interprocess::local_socket::traits::Stream as _;
-    use interprocess::local_socket::{GenericFilePath, ListenerOptions, ToFsName};
+    use crate::socket::connect;
 
     /// A port that keeps the thread that receives for a while, as a signal would keep all.
     struct Pausing {
@@ -348,8 +362,7 @@ mod tests {
         for (pause_ms, is_sent) in [(10, true), (900, false)] {
             let folder = tempfile::tempdir().unwrap();
             let path = folder.path().join("socket");
-            let name = || path.as_path().to_fs_name::<GenericFilePath>().unwrap();
-            let listener = ListenerOptions::new().name(name()).create_sync().unwrap();
+            let listener = Listener::at(&path).unwrap();
             let lock = File::create(folder.path().join("lock")).unwrap();
             let sent = Arc::new(Mutex::new(Vec::new()));
             let port = || Pausing {
@@ -358,11 +371,10 @@ mod tests {
             };
             let waking = path.clone();
             let wake = move || {
-                let name = waking.as_path().to_fs_name::<GenericFilePath>();
-                let _ = name.and_then(Stream::connect);
+                let _ = connect(&waking);
             };
             let hub = Hub::start((port(), port()), listener, wake, lock);
-            let mut stream = &Stream::connect(name()).unwrap();
+            let mut stream = &connect(&path).unwrap();
             thread::sleep(Duration::from_millis(600));
             stream.write_all(FRAME).unwrap();
             thread::sleep(Duration::from_millis(600));

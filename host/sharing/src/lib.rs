@@ -33,6 +33,7 @@
 //! | what the hub knows of each program | `member.rs` |
 //! | what should end with a program | `left_open.rs` |
 //! | names of socket and lock | `place.rs` |
+//! | sockets of each system | `socket.rs` |
 //! | messages between programs, which the device never sees | `note.rs` |
 #![forbid(unsafe_code)]
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -46,6 +47,7 @@ mod member;
 mod note;
 mod place;
 mod shared;
+mod socket;
 
 pub use note::Program;
 pub use shared::Shared;

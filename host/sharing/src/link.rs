@@ -2,9 +2,8 @@
 
 use crate::frames::Frames;
 use crate::note::Note;
+use crate::socket::Stream;
 use crepitus_protocol::Decoder;
-use interprocess::local_socket::Stream;
-use interprocess::local_socket::traits::Stream as _;
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
@@ -38,7 +37,7 @@ impl Link {
     /// The hub has gone, or was stopped: it takes nothing, and the last frame may be torn.
     pub(crate) fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.stream.set_nonblocking(false)?;
-        self.stream.set_send_timeout(Some(SEND))?;
+        self.stream.set_write_timeout(Some(SEND))?;
         self.stream.write_all(bytes)
     }
 
@@ -62,7 +61,7 @@ impl Link {
         // which more bytes arrive.
         self.stream.set_nonblocking(patience.is_zero())?;
         if !patience.is_zero() {
-            self.stream.set_recv_timeout(Some(patience))?;
+            self.stream.set_read_timeout(Some(patience))?;
         }
         let count = match self.stream.read(&mut buffer) {
             Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
@@ -98,8 +97,8 @@ fn note_of(frame: &[u8]) -> Option<Note> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use interprocess::local_socket::traits::ListenerExt;
-    use interprocess::local_socket::{GenericFilePath, ListenerOptions, ToFsName};
+    use crate::socket::{Listener, connect};
+    use std::thread;
     use std::time::Instant;
 
     /// A hub that was stopped takes what the system keeps for it, and no more.
@@ -107,10 +106,10 @@ mod tests {
     fn sending_to_a_program_that_was_stopped_ends() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("socket");
-        let name = || path.as_path().to_fs_name::<GenericFilePath>().unwrap();
-        let listener = ListenerOptions::new().name(name()).create_sync().unwrap();
-        let mut link = Link::new(Stream::connect(name()).unwrap());
-        let stopped = listener.incoming().next().unwrap().unwrap();
+        let listener = Listener::at(&path).unwrap();
+        let stopped = thread::spawn(move || listener.accept().unwrap().enter().unwrap());
+        let mut link = Link::new(connect(&path).unwrap());
+        let stopped = stopped.join().unwrap();
         let begun = Instant::now();
         let error = (0..1_000_000).find_map(|_| link.send(&[0; 1_000]).err());
         assert!(error.is_some());

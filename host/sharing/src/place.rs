@@ -2,6 +2,7 @@
 //! folder, named after the device.
 
 use crepitus_client::discovery::{self, DeviceKind};
+use crepitus_protocol::frame::CRC;
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -46,6 +47,7 @@ impl Place {
     }
 
     fn in_folder(folder: &Path, name: &str) -> Self {
+        let name = shortened(name, LONGEST.saturating_sub(folder.as_os_str().len()));
         Self {
             socket: folder.join(format!("{name}.socket")),
             lock: folder.join(format!("{name}.lock")),
@@ -88,6 +90,17 @@ fn named(serial_number: Option<&str>, path: &Path) -> String {
     }
 }
 
+/// A name that fits: the end of one that does not is a checksum of all of it. No folder is so deep
+/// that this is not enough, or the system refuses the socket.
+fn shortened(name: &str, room: usize) -> String {
+    if name.len() <= room {
+        return name.to_owned();
+    }
+    let sum = format!("-{:08x}", CRC.checksum(name.as_bytes()));
+    let begin = name.get(..room.saturating_sub(sum.len()));
+    begin.unwrap_or_default().to_owned() + &sum
+}
+
 /// A path as the name of a file: letters, digits, dots, and dashes for all else.
 fn file_name(path: &Path) -> String {
     let plain = |c: char| {
@@ -114,6 +127,22 @@ mod tests {
             assert!(!one.starts_with(['.', '-']), "{one}");
         }
         assert_eq!(named(Some("A 1"), ports[0]), "A-1-dev-ttyACM0");
+    }
+
+    /// macOS has 104 bytes for a path, and half of them are in that of its temporary folder.
+    #[test]
+    fn a_long_name_fits_and_stays_its_own() {
+        let folder =
+            Path::new("/var/folders/zz/zyxvpxvq6csfxvn_n0000000000000/T/crepitus-501/shared");
+        let number = "0123456789ABCDEF01234567";
+        let [one, other] = ["/dev/cu.usbmodem1101", "/dev/cu.usbmodem1102"]
+            .map(|path| Place::in_folder(folder, &named(Some(number), Path::new(path))).socket);
+        assert_ne!(one, other);
+        for path in [one, other] {
+            assert!(path.as_os_str().len() <= 103, "{}", path.display());
+            assert_eq!(path.extension(), Some("socket".as_ref()));
+        }
+        assert_eq!(shortened("knee", 4), "knee");
     }
 
     #[test]

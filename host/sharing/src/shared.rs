@@ -6,11 +6,8 @@ use crate::left_open::{LeftOpen, requests_in};
 use crate::link::Link;
 use crate::note::{Note, Program};
 use crate::place::Place;
+use crate::socket::{Listener, connect};
 use crepitus_client::{Serial, Transport, TransportError, discovery};
-use interprocess::local_socket::traits::Stream as _;
-use interprocess::local_socket::{
-    GenericFilePath, Listener, ListenerOptions, Name, Stream, ToFsName,
-};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 use std::thread;
@@ -123,11 +120,11 @@ impl Shared {
                 Ok(Some(lock)) => {
                     let ports = Serial::open(&self.port)?.split()?;
                     let listener =
-                        listen(&place.socket).map_err(|error| self.cannot_meet(&error))?;
+                        Listener::at(&place.socket).map_err(|error| self.cannot_meet(&error))?;
                     let socket_path = place.socket.clone();
                     let wake = move || {
                         // Only to end its wait.
-                        let _ = socket(&socket_path).and_then(Stream::connect);
+                        let _ = connect(&socket_path);
                     };
                     self.hub = Some(Hub::start(ports, listener, wake, lock));
                 }
@@ -146,7 +143,7 @@ impl Shared {
 
     /// Connects to the hub at this place; false if there is none.
     fn join(&mut self, place: &Place) -> Result<bool, TransportError> {
-        let Ok(stream) = socket(&place.socket).and_then(Stream::connect) else {
+        let Ok(stream) = connect(&place.socket) else {
             return Ok(false);
         };
         match self.greet(Link::new(stream)) {
@@ -265,21 +262,4 @@ fn lost(port: &str) -> TransportError {
         port: port.to_owned(),
         detail: "the program that had it open has ended, and it does not open again".to_owned(),
     }
-}
-
-fn socket(path: &Path) -> io::Result<Name<'_>> {
-    path.to_fs_name::<GenericFilePath>()
-}
-
-/// Listens on a socket that only this user can open. One that an earlier program
-/// has left is replaced; whoever calls this has the lock.
-fn listen(path: &Path) -> io::Result<Listener> {
-    let _ = std::fs::remove_file(path);
-    let options = ListenerOptions::new().name(socket(path)?);
-    #[cfg(unix)]
-    let options = {
-        use interprocess::os::unix::local_socket::ListenerOptionsExt;
-        options.mode(0o600)
-    };
-    options.create_sync()
 }

@@ -208,6 +208,7 @@ impl Sound {
         let folder = file
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty());
+        #[cfg_attr(not(unix), expect(unused_mut, reason = "files have no mode there"))]
         let mut builder = tempfile::Builder::new();
         // The usual permissions, not those of a temporary file.
         #[cfg(unix)]

@@ -67,6 +67,7 @@ pub mod enumeration;
 mod frame_time;
 pub mod host;
 mod peripheral;
+#[cfg(unix)]
 pub mod pty;
 pub mod usbip;
 pub mod wire;

@@ -1,5 +1,6 @@
 //! `crepitus serve-sim`: a simulated device as a serial port, or as a USB device, in real time.
 
+#[cfg_attr(not(unix), path = "serve_sim/no_port.rs")]
 mod port;
 mod usbip;
 

@@ -46,7 +46,7 @@ fn with_sensor<F: Precise, S: Sensor<F>>(
     };
     let omega = F::from_f64(scene.start().omega_rad_s);
     let joint = AnyJoint::new(&crepitus.settings, solver, step_s, omega)?;
-    with_joint(scene, watch, *crepitus.settings, sensor, joint)
+    step_joint(scene, watch, *crepitus.settings, sensor, joint)
 }
 
 /// A scene without a joint: the motion, and perhaps its sensor.
@@ -88,7 +88,7 @@ fn bare<F: Real, S: Sensor<F>>(
 }
 
 /// A scene with a joint.
-fn with_joint<F: Real, S: Sensor<F>>(
+fn step_joint<F: Real, S: Sensor<F>>(
     scene: &Scene,
     watch: &mut dyn Watch,
     settings: Settings,

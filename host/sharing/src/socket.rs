@@ -1,0 +1,15 @@
+//! The connection of two programs of one user: a Unix socket, or, on a system without, one of
+//! the loopback with a secret.
+//!
+//! Both are streams of the standard library, with its timeouts. Either way a [`Listener`] is
+//! found by a path in a folder of this user alone, and nobody else gets past [`Arrival::enter`].
+
+#[cfg(any(test, not(unix)))]
+mod loopback;
+#[cfg(unix)]
+mod unix;
+
+#[cfg(not(unix))]
+pub(crate) use loopback::{Arrival, Listener, Stream, connect};
+#[cfg(unix)]
+pub(crate) use unix::{Arrival, Listener, Stream, connect};
