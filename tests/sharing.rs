@@ -10,11 +10,11 @@ use crepitus_recording::Recording;
 use crepitus_scene::{Overrides, Scene};
 use crepitus_usb::pty::Pty;
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Lines};
 use std::os::unix::fs::{MetadataExt, chown};
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{JoinHandle, sleep};
@@ -272,18 +272,20 @@ fn the_one_that_serves_disarms_for_a_program_that_is_killed() {
     serving.wait().unwrap();
 }
 
+/// A program that streams. The reader is to be kept, as a closed one would end it.
+fn streaming(served: &Served) -> (Child, Lines<BufReader<ChildStdout>>) {
+    let mut child = start(served, &["stream", "--rate", "10"]);
+    let mut rows = BufReader::new(child.stdout.take().unwrap()).lines();
+    assert!(rows.nth(1).unwrap().is_ok(), "a first row");
+    (child, rows)
+}
+
 /// What a program has subscribed to with one that served before ends with it, too.
 #[test]
 fn the_next_one_that_serves_knows_what_was_subscribed_before() {
     let served = Served::new();
     let port = fs::canonicalize(served.port()).unwrap();
-    // The reader is kept, as a closed one would end the program.
-    let stream = || {
-        let mut child = start(&served, &["stream", "--rate", "10"]);
-        let mut rows = BufReader::new(child.stdout.take().unwrap()).lines();
-        assert!(rows.nth(1).unwrap().is_ok(), "a first row");
-        (child, rows)
-    };
+    let stream = || streaming(&served);
     let serves = |child: &Child| {
         let files = fs::read_dir(format!("/proc/{}/fd", child.id())).unwrap();
         files
@@ -314,6 +316,35 @@ fn the_next_one_that_serves_knows_what_was_subscribed_before() {
     let before = sent();
     sleep(Duration::from_millis(500));
     assert_eq!(sent(), before, "samples are sent to nobody");
+}
+
+/// What the program that serves has left open when it is killed, the next one ends: the others
+/// were told of it.
+#[test]
+fn the_next_one_that_serves_ends_what_the_killed_one_has_left_open() {
+    let served = Served::new();
+    let (mut first, _rows) = streaming(&served);
+    let armed = start(&served, &["arm", "--zero"]);
+    until_armed(&served);
+    // Those that wait for a reader in vain are dropped.
+    let subscribed = || {
+        let counters = &served.info()["counters"]["comms"];
+        let count = |name: &str| counters[name].as_u64().unwrap();
+        count("sent-samples") + count("dropped-samples")
+    };
+    let before = subscribed();
+    sleep(Duration::from_millis(100));
+    assert!(subscribed() > before);
+    signal(&first, "-KILL");
+    first.wait().unwrap();
+    // Not by looking often: each look is a session, and 32 of them drive out the oldest.
+    sleep(Duration::from_secs(1));
+    let before = subscribed();
+    sleep(Duration::from_millis(200));
+    assert_eq!(subscribed(), before, "samples are sent to nobody");
+    assert_eq!(served.info()["status"]["state"], "armed");
+    signal(&armed, "-INT");
+    assert!(armed.wait_with_output().unwrap().status.success());
 }
 
 /// A program that serves and is stopped, as by Ctrl-Z: the others are told, and

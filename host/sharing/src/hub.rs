@@ -16,6 +16,7 @@ use crate::note::Note;
 use crate::socket::{Arrival, Listener, Stream};
 use crepitus_client::{Transport, TransportError};
 use crepitus_protocol::Decoder;
+use crepitus_protocol::frame::Frame;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read, Write};
@@ -254,9 +255,17 @@ impl State {
                 return false;
             }
         }
-        if let Some(member) = self.members().get_mut(&number) {
+        let mut members = self.members();
+        if let Some(member) = members.get_mut(&number) {
             for request in requests_in(frame) {
                 member.open.requests(&request);
+            }
+            if member.is_this()
+                && let Some(heir) = heir_of(member)
+            {
+                for (_, other) in members.iter().filter(|(other, _)| **other != number) {
+                    other.pass(&heir);
+                }
             }
         }
         true
@@ -271,6 +280,16 @@ impl State {
                     let welcome = Note::Welcome.frame();
                     member.pass(&Chunk::from(welcome.unwrap_or_default().as_slice()));
                 }
+                let own = members.values().find(|member| member.is_this());
+                if let Some(heir) = own.and_then(heir_of)
+                    && let Some(member) = members.get(&number)
+                {
+                    member.pass(&heir);
+                }
+            }
+            Note::Heir { open, is_armed } => {
+                drop(members);
+                self.send_will(open.will(is_armed));
             }
             Note::LeftOpen(open) => {
                 if let Some(member) = members.get_mut(&number) {
@@ -297,11 +316,24 @@ impl State {
         let Some(member) = self.members().remove(&number) else {
             return;
         };
-        for frame in member.open.last_will() {
+        self.send_will(member.open.last_will());
+    }
+
+    fn send_will(&self, will: Vec<Frame>) {
+        for frame in will {
             // Fails only when the hub ends.
             let _ = self.to_port.send(Chunk::from(frame.as_slice()));
         }
     }
+}
+
+/// What the others keep of this program's own member.
+fn heir_of(member: &Member) -> Option<Chunk> {
+    let heir = Note::Heir {
+        open: member.open.clone(),
+        is_armed: member.open.is_armed(),
+    };
+    heir.frame().map(|frame| Chunk::from(frame.as_slice()))
 }
 
 /// Chunks to a program, until the hub or the program ends.
@@ -320,7 +352,11 @@ fn write_all(mut stream: &Stream, inbox: &Receiver<Chunk>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::link::Link;
+    use crate::note::Program;
     use crate::socket::connect;
+    use crepitus_protocol::host::{Operation, Request};
+    use crepitus_protocol::{Lane, Nonce, Session, frame};
 
     /// A port that keeps the thread that receives for a while, as a signal would keep all.
     struct Pausing {
@@ -354,27 +390,32 @@ mod tests {
         }
     }
 
+    /// A hub with a port of that pause, and what it sends there.
+    fn served(pause_ms: u64) -> (tempfile::TempDir, Hub, Arc<Mutex<Vec<u8>>>) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("socket");
+        let listener = Listener::at(&path).unwrap();
+        let lock = File::create(folder.path().join("lock")).unwrap();
+        let sent = Arc::new(Mutex::new(Vec::new()));
+        let port = || Pausing {
+            pause: Duration::from_millis(pause_ms),
+            sent: sent.clone(),
+        };
+        let wake = move || {
+            let _ = connect(&path);
+        };
+        let hub = Hub::start((port(), port()), listener, wake, lock);
+        (folder, hub, sent)
+    }
+
     /// What has waited for a program that was stopped is not sent when it goes on: a request to
     /// arm would arm a device of which nobody thinks any more.
     #[test]
     fn what_has_waited_for_a_program_that_was_stopped_is_not_sent() {
         const FRAME: &[u8] = b"\x03ab\0";
         for (pause_ms, is_sent) in [(10, true), (900, false)] {
-            let folder = tempfile::tempdir().unwrap();
-            let path = folder.path().join("socket");
-            let listener = Listener::at(&path).unwrap();
-            let lock = File::create(folder.path().join("lock")).unwrap();
-            let sent = Arc::new(Mutex::new(Vec::new()));
-            let port = || Pausing {
-                pause: Duration::from_millis(pause_ms),
-                sent: sent.clone(),
-            };
-            let waking = path.clone();
-            let wake = move || {
-                let _ = connect(&waking);
-            };
-            let hub = Hub::start((port(), port()), listener, wake, lock);
-            let mut stream = &connect(&path).unwrap();
+            let (folder, hub, sent) = served(pause_ms);
+            let mut stream = &connect(&folder.path().join("socket")).unwrap();
             thread::sleep(Duration::from_millis(600));
             stream.write_all(FRAME).unwrap();
             thread::sleep(Duration::from_millis(600));
@@ -382,5 +423,58 @@ mod tests {
             let sent = sent.lock().unwrap().clone();
             assert_eq!(sent.ends_with(FRAME), is_sent, "{pause_ms} ms: {sent:?}");
         }
+    }
+
+    /// The program that served was killed: another one, to which it had said what it leaves open,
+    /// gives that to the next hub, which ends it.
+    #[test]
+    fn what_a_killed_hub_has_left_open_is_ended_by_the_next() {
+        let request = |number, operation| Request {
+            session: Session(7),
+            nonce: Nonce(9),
+            number,
+            operation,
+        };
+        let (folder, hub, _) = served(1);
+        let join = |program: Program| {
+            let socket = folder.path().join("socket");
+            let mut link = Link::new(connect(&socket).unwrap());
+            link.send(&Note::Hello(program).frame().unwrap()).unwrap();
+            while link.note() != Some(Note::Welcome) {
+                link.fill(Duration::from_secs(5)).unwrap();
+            }
+            link
+        };
+        // This process is the one that serves; the other is a stranger.
+        let mut own = join(Program::this("serves"));
+        let mut other = join(Program {
+            pid: 0,
+            ..Program::this("other")
+        });
+        for (number, operation) in [(1, Operation::Subscribe), (2, Operation::Arm)] {
+            let frame = frame::encode(Lane::Request, &request(number, operation)).unwrap();
+            own.send(&frame).unwrap();
+        }
+        // In order: this comes behind the note about both.
+        let deadline = Instant::now() + Duration::from_secs(5);
+        let armed = |link: &Link| matches!(link.heir(), Some(Note::Heir { is_armed: true, .. }));
+        while !armed(&other) && Instant::now() < deadline {
+            other.fill(Duration::from_millis(20)).unwrap();
+        }
+        let heir = other.into_heir().unwrap();
+        drop(hub);
+        let (folder, _hub, sent) = served(1);
+        let mut stream = &connect(&folder.path().join("socket")).unwrap();
+        stream.write_all(&heir.frame().unwrap()).unwrap();
+        while sent.lock().unwrap().len() < 20 && Instant::now() < deadline {
+            thread::sleep(Duration::from_millis(5));
+        }
+        thread::sleep(Duration::from_millis(50));
+        let found = requests_in(&sent.lock().unwrap());
+        let expected = [
+            request(3, Operation::Disarm),
+            request(4, Operation::Unsubscribe),
+        ];
+        assert_eq!(found, expected);
     }
 }

@@ -56,12 +56,21 @@ impl LeftOpen {
         is_recent(self.renewed)
     }
 
+    /// Whether it has asked to be armed, and not to be disarmed since.
+    pub(crate) fn is_armed(&self) -> bool {
+        self.asked.is_some() || self.renewed.is_some()
+    }
+
     /// Requests on behalf of a program that has gone.
     pub(crate) fn last_will(&self) -> Vec<Frame> {
+        self.will(is_recent(self.asked) || self.renews())
+    }
+
+    /// The same of a program of which only this is known: it may be armed.
+    pub(crate) fn will(&self, may_be_armed: bool) -> Vec<Frame> {
         let Some((session, nonce, last)) = self.last else {
             return Vec::new();
         };
-        let may_be_armed = is_recent(self.asked) || self.renews();
         let disarm = may_be_armed.then_some(Operation::Disarm);
         let unsubscribe = self.is_subscribed.then_some(Operation::Unsubscribe);
         let mut number = last;

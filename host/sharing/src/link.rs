@@ -19,6 +19,8 @@ pub(crate) struct Link {
     /// Frames of the device that were received and not read.
     unread: VecDeque<u8>,
     notes: VecDeque<Note>,
+    /// What the program that serves has left open, unless it has ended in order.
+    heir: Option<Note>,
 }
 
 impl Link {
@@ -28,7 +30,19 @@ impl Link {
             frames: Frames::default(),
             unread: VecDeque::new(),
             notes: VecDeque::new(),
+            heir: None,
         }
+    }
+
+    /// What the program that serves has left open so far.
+    #[cfg(test)]
+    pub(crate) fn heir(&self) -> Option<&Note> {
+        self.heir.as_ref()
+    }
+
+    /// What the program that served has left open, if it was killed.
+    pub(crate) fn into_heir(self) -> Option<Note> {
+        self.heir
     }
 
     /// Sends bytes.
@@ -75,10 +89,16 @@ impl Link {
                 };
             }
         };
-        let (unread, notes) = (&mut self.unread, &mut self.notes);
+        let (unread, notes, heir) = (&mut self.unread, &mut self.notes, &mut self.heir);
         let bytes = buffer.get(..count).unwrap_or_default();
         self.frames.push(bytes, |frame| match note_of(frame) {
-            Some(note) => notes.push_back(note),
+            Some(note @ Note::Heir { .. }) => *heir = Some(note),
+            Some(note) => {
+                if note == Note::Leaving {
+                    *heir = None;
+                }
+                notes.push_back(note);
+            }
             None => unread.extend(frame),
         });
         Ok(true)

@@ -40,6 +40,11 @@ impl Member {
         }
     }
 
+    /// Whether it is this program.
+    pub(crate) fn is_this(&self) -> bool {
+        self.program.pid == std::process::id()
+    }
+
     /// The program, as of now.
     pub(crate) fn program(&self) -> Program {
         Program {

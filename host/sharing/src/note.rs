@@ -57,6 +57,14 @@ pub(crate) enum Note {
     Member(Program),
     /// The end of an answer.
     End,
+    /// What the program that serves has left open: to all others, after each of its requests. If it
+    /// is killed, they give it to the next hub, which ends it.
+    Heir {
+        /// Its subscription.
+        open: LeftOpen,
+        /// Its lease.
+        is_armed: bool,
+    },
     /// The hub ends: connect anew.
     Leaving,
     /// Of another version.
@@ -100,6 +108,10 @@ mod tests {
         for note in [
             Note::Hello(longest),
             Note::LeftOpen(LeftOpen::default()),
+            Note::Heir {
+                open: LeftOpen::default(),
+                is_armed: true,
+            },
             Note::Welcome,
             Note::Who,
             Note::Leaving,

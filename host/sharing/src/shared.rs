@@ -33,6 +33,8 @@ pub struct Shared {
     sent: Frames,
     open: LeftOpen,
     link: Option<Link>,
+    /// What a program that served and was killed has left open.
+    heir: Option<Note>,
     /// Where this program serves the others.
     hub: Option<Hub>,
     began: Instant,
@@ -52,6 +54,7 @@ impl Shared {
             sent: Frames::default(),
             open: LeftOpen::default(),
             link: None,
+            heir: None,
             hub: None,
             began: Instant::now(),
         };
@@ -96,7 +99,9 @@ impl Shared {
 
     /// Connects to the hub, or becomes it.
     fn attach(&mut self) -> Result<(), TransportError> {
-        self.link = None;
+        if let Some(link) = self.link.take() {
+            self.heir = link.into_heir();
+        }
         if self.hub.as_ref().is_some_and(Hub::is_over) {
             self.hub = None;
         }
@@ -143,15 +148,22 @@ impl Shared {
 
     /// Connects to the hub at this place; false if there is none.
     fn join(&mut self, place: &Place) -> Result<bool, TransportError> {
-        let Ok(stream) = connect(&place.socket) else {
-            return Ok(false);
+        let greeted = match connect(&place.socket) {
+            Ok(stream) => self.greet(Link::new(stream)),
+            Err(error) if is_timeout(&error) && matches!(place.lock(), Ok(None)) => Err(error),
+            // Nobody, or a stranger who has got an old port.
+            Err(_) => return Ok(false),
         };
-        match self.greet(Link::new(stream)) {
-            Ok(link) => {
+        match greeted {
+            Ok(mut link) => {
+                if let Some(frame) = self.heir.take().and_then(|heir| heir.frame()) {
+                    // Whoever has gone in the meantime has one, too.
+                    let _ = link.send(&frame);
+                }
                 self.link = Some(link);
                 Ok(true)
             }
-            Err(error) if error.kind() == ErrorKind::TimedOut => Err(TransportError::Hangs {
+            Err(error) if is_timeout(&error) => Err(TransportError::Hangs {
                 port: self.port.clone(),
                 holder: crepitus_client::holder_of(&self.port),
             }),
@@ -248,6 +260,10 @@ impl Transport for Shared {
     fn name(&self) -> String {
         self.port.clone()
     }
+}
+
+fn is_timeout(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock)
 }
 
 fn not_again(port: &str, error: &TransportError) -> TransportError {

@@ -83,7 +83,7 @@ fn random() -> io::Result<String> {
 /// Listens on the loopback; the file at its path, which it removes in the end, says where.
 #[derive(Debug)]
 pub(crate) struct Listener {
-    listener: TcpListener,
+    socket: TcpListener,
     path: PathBuf,
     meeting: Meeting,
 }
@@ -95,11 +95,11 @@ impl Listener {
     /// # Errors
     /// Of the system: the folder is gone, no port is left.
     pub(crate) fn at(path: &Path) -> io::Result<Self> {
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
-        let meeting = Meeting::draw(listener.local_addr()?.port())?;
+        let socket = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
+        let meeting = Meeting::draw(socket.local_addr()?.port())?;
         meeting.write(path)?;
         Ok(Self {
-            listener,
+            socket,
             path: path.to_owned(),
             meeting,
         })
@@ -110,7 +110,7 @@ impl Listener {
     /// # Errors
     /// Of the system, as too many open files.
     pub(crate) fn accept(&self) -> io::Result<Arrival> {
-        let (stream, _) = self.listener.accept()?;
+        let (stream, _) = self.socket.accept()?;
         Ok(Arrival {
             stream,
             meeting: self.meeting.clone(),

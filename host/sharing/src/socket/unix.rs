@@ -57,7 +57,8 @@ impl Arrival {
     /// Lets it in: only this user can open the socket.
     ///
     /// # Errors
-    /// None.
+    /// None: where there are no such sockets there are.
+    #[expect(clippy::unnecessary_wraps, reason = "the same as on other systems")]
     pub(crate) fn enter(self) -> io::Result<Stream> {
         Ok(self.0)
     }
