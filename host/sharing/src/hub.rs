@@ -59,15 +59,13 @@ struct State {
 }
 
 impl Hub {
-    /// Serves a port. `wake` connects to the listener; the lock is kept as long
-    /// as the port is open.
+    /// Serves a port. The lock is kept as long as the port is open.
     pub(crate) fn start(
         ports: (
             impl Transport + Send + 'static,
             impl Transport + Send + 'static,
         ),
         listener: Listener,
-        wake: impl FnOnce() + Send + 'static,
         lock: File,
     ) -> Self {
         let (to_port, queue) = sync_channel(QUEUE);
@@ -80,6 +78,7 @@ impl Hub {
         });
         let (receiver, sender) = ports;
         let [for_accept, for_send, for_receive] = [(); 3].map(|()| state.clone());
+        let wake = listener.waker();
         let acceptor = thread::spawn(move || for_accept.accept(&listener));
         let sending = thread::spawn(move || for_send.send_all(sender, &queue));
         let thread = thread::spawn(move || {
@@ -280,16 +279,21 @@ impl State {
                     let welcome = Note::Welcome.frame();
                     member.pass(&Chunk::from(welcome.unwrap_or_default().as_slice()));
                 }
-                let own = members.values().find(|member| member.is_this());
-                if let Some(heir) = own.and_then(heir_of)
+                let mut others = members.iter().filter(|(other, _)| **other != number);
+                let own = others.find(|(_, member)| member.is_this());
+                if let Some(heir) = own.and_then(|(_, own)| heir_of(own))
                     && let Some(member) = members.get(&number)
                 {
                     member.pass(&heir);
                 }
             }
             Note::Heir { open, is_armed } => {
+                // Of a program that is here nothing is to be ended.
+                let lives = (members.values()).any(|m| m.open.session() == open.session());
                 drop(members);
-                self.send_will(open.will(is_armed));
+                if !lives {
+                    self.send_will(open.will(is_armed));
+                }
             }
             Note::LeftOpen(open) => {
                 if let Some(member) = members.get_mut(&number) {
@@ -401,10 +405,7 @@ mod tests {
             pause: Duration::from_millis(pause_ms),
             sent: sent.clone(),
         };
-        let wake = move || {
-            let _ = connect(&path);
-        };
-        let hub = Hub::start((port(), port()), listener, wake, lock);
+        let hub = Hub::start((port(), port()), listener, lock);
         (folder, hub, sent)
     }
 
@@ -435,7 +436,7 @@ mod tests {
             number,
             operation,
         };
-        let (folder, hub, _) = served(1);
+        let (folder, hub, sent_before) = served(1);
         let join = |program: Program| {
             let socket = folder.path().join("socket");
             let mut link = Link::new(connect(&socket).unwrap());
@@ -461,11 +462,15 @@ mod tests {
         while !armed(&other) && Instant::now() < deadline {
             other.fill(Duration::from_millis(20)).unwrap();
         }
-        let heir = other.into_heir().unwrap();
+        let heir = other.heir().unwrap().frame().unwrap();
+        // Its program lives: nothing is ended.
+        other.send(&heir).unwrap();
+        thread::sleep(Duration::from_millis(100));
+        assert_eq!(requests_in(&sent_before.lock().unwrap()).len(), 2);
         drop(hub);
         let (folder, _hub, sent) = served(1);
         let mut stream = &connect(&folder.path().join("socket")).unwrap();
-        stream.write_all(&heir.frame().unwrap()).unwrap();
+        stream.write_all(&heir).unwrap();
         while sent.lock().unwrap().len() < 20 && Instant::now() < deadline {
             thread::sleep(Duration::from_millis(5));
         }

@@ -7,14 +7,13 @@ use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
 /// Kept by the hub for every program, and by each program itself: with the hub it would be
-/// forgotten.
+/// forgotten. What the hub's own program has left open, the others keep.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct LeftOpen {
     /// Session, nonce and number of its last request.
     last: Option<(Session, Nonce, u32)>,
     is_subscribed: bool,
-    /// When it asked to be armed, and renewed the lease last: not known to another hub, by
-    /// then the lease has ended.
+    /// When it asked to be armed, and renewed the lease last: not known to another hub.
     #[serde(skip)]
     asked: Option<Instant>,
     #[serde(skip)]

@@ -14,7 +14,8 @@
 //! Towards the device the hub merges whole frames; what the device says goes to
 //! all. Each program has its own session, and at most one holds the lease, so the
 //! hub knows nothing of requests, with one exception: when a program ends
-//! without a word, the hub disarms and unsubscribes for it.
+//! without a word, the hub disarms and unsubscribes for it; for the program of a hub
+//! that was killed, the next one does.
 //!
 //! **When the first program ends,** the others find their sockets closed. One of
 //! them gets the lock, opens the port and serves it; the rest connect to that
@@ -23,7 +24,7 @@
 //! on the connection.
 //!
 //! **Who may connect:** the same user. Socket and lock are in a folder of that
-//! user alone.
+//! user alone; where there are no Unix sockets, a secret is.
 //!
 //! | to find | look in |
 //! |---|---|

@@ -11,6 +11,9 @@ use std::time::Duration;
 /// Timeout of sending: longer than a port takes nothing.
 const SEND: Duration = Duration::from_millis(500);
 
+/// Reads of what a system keeps for a program that does not read.
+const MOST_UNREAD: usize = 256;
+
 /// The connection of a program to the hub.
 #[derive(Debug)]
 pub(crate) struct Link {
@@ -21,6 +24,8 @@ pub(crate) struct Link {
     notes: VecDeque<Note>,
     /// What the program that serves has left open, unless it has ended in order.
     heir: Option<Note>,
+    /// It has closed its end.
+    is_cut: bool,
 }
 
 impl Link {
@@ -31,6 +36,7 @@ impl Link {
             unread: VecDeque::new(),
             notes: VecDeque::new(),
             heir: None,
+            is_cut: false,
         }
     }
 
@@ -40,9 +46,16 @@ impl Link {
         self.heir.as_ref()
     }
 
-    /// What the program that served has left open, if it was killed.
-    pub(crate) fn into_heir(self) -> Option<Note> {
-        self.heir
+    /// What the program that served has left open, if it was killed: it has closed its end without a
+    /// word. One that hangs has not, and may go on.
+    pub(crate) fn into_heir(mut self) -> Option<Note> {
+        // The word may be unread.
+        for _ in 0..MOST_UNREAD {
+            if !self.fill(Duration::ZERO).unwrap_or(false) {
+                break;
+            }
+        }
+        self.heir.filter(|_| self.is_cut)
     }
 
     /// Sends bytes.
@@ -78,14 +91,20 @@ impl Link {
             self.stream.set_read_timeout(Some(patience))?;
         }
         let count = match self.stream.read(&mut buffer) {
-            Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
+            Ok(0) => {
+                self.is_cut = true;
+                return Err(ErrorKind::UnexpectedEof.into());
+            }
             Ok(count) => count,
             Err(error) => {
                 return match error.kind() {
                     ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => {
                         Ok(false)
                     }
-                    _ => Err(error),
+                    _ => {
+                        self.is_cut = true;
+                        Err(error)
+                    }
                 };
             }
         };
@@ -135,5 +154,37 @@ mod tests {
         assert!(error.is_some());
         assert!(begun.elapsed() < Duration::from_secs(5));
         drop(stopped);
+    }
+
+    /// Only of a program that has closed its end without a word there is something to end.
+    #[test]
+    fn who_hangs_or_leaves_in_order_has_no_heir() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("socket");
+        let listener = Listener::at(&path).unwrap();
+        let heir = Note::Heir {
+            open: crate::left_open::LeftOpen::default(),
+            is_armed: true,
+        };
+        for (leaves, is_cut, is_left) in [
+            (false, true, true),
+            (true, true, false),
+            (false, false, false),
+        ] {
+            // On a loopback, each waits for the other's proof.
+            let served = thread::scope(|scope| {
+                let served = scope.spawn(|| listener.accept().unwrap().enter().unwrap());
+                let link = Link::new(connect(&path).unwrap());
+                (served.join().unwrap(), link)
+            });
+            let (mut served, link) = served;
+            served.write_all(&heir.frame().unwrap()).unwrap();
+            if leaves {
+                served.write_all(&Note::Leaving.frame().unwrap()).unwrap();
+            }
+            let kept = (!is_cut).then_some(served);
+            assert_eq!(link.into_heir().is_some(), is_left, "{leaves} {is_cut}");
+            drop(kept);
+        }
     }
 }

@@ -99,8 +99,8 @@ impl Shared {
 
     /// Connects to the hub, or becomes it.
     fn attach(&mut self) -> Result<(), TransportError> {
-        if let Some(link) = self.link.take() {
-            self.heir = link.into_heir();
+        if let Some(heir) = self.link.take().and_then(Link::into_heir) {
+            self.heir = Some(heir);
         }
         if self.hub.as_ref().is_some_and(Hub::is_over) {
             self.hub = None;
@@ -118,21 +118,15 @@ impl Shared {
         }
         let end = Instant::now() + ATTACH;
         loop {
-            if self.join(&place)? {
-                return Ok(());
-            }
+            // First, as a connection that nobody takes may have to be waited for.
             match place.lock() {
                 Ok(Some(lock)) => {
                     let ports = Serial::open(&self.port)?.split()?;
                     let listener =
                         Listener::at(&place.socket).map_err(|error| self.cannot_meet(&error))?;
-                    let socket_path = place.socket.clone();
-                    let wake = move || {
-                        // Only to end its wait.
-                        let _ = connect(&socket_path);
-                    };
-                    self.hub = Some(Hub::start(ports, listener, wake, lock));
+                    self.hub = Some(Hub::start(ports, listener, lock));
                 }
+                Ok(None) if self.join(&place)? => return Ok(()),
                 // Another program is opening the port, or closing it.
                 Ok(None) if Instant::now() < end => thread::sleep(TRY_EVERY),
                 Ok(None) => {
@@ -156,9 +150,10 @@ impl Shared {
         };
         match greeted {
             Ok(mut link) => {
-                if let Some(frame) = self.heir.take().and_then(|heir| heir.frame()) {
-                    // Whoever has gone in the meantime has one, too.
-                    let _ = link.send(&frame);
+                if let Some(frame) = self.heir.as_ref().and_then(Note::frame)
+                    && link.send(&frame).is_ok()
+                {
+                    self.heir = None;
                 }
                 self.link = Some(link);
                 Ok(true)

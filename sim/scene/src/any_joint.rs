@@ -1,5 +1,5 @@
-//! A joint of any rung behind one type: where a loop is not hot, it is compiled
-//! once and not for every rung.
+//! A joint of any rung behind one type: a loop is compiled once and not for every rung, for a
+//! virtual call a step.
 
 use crepitus_model::Validated;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};

@@ -49,8 +49,11 @@ impl Pty {
     /// The system has no ptys left; or something else is at the link's place
     /// ([`io::ErrorKind::AlreadyExists`]), or the link cannot be made there.
     pub fn new(link: Option<&Path>) -> io::Result<Self> {
-        let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY)?;
-        // Not every system takes it as a flag of the above.
+        let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
+        // At once, where the system can: another thread may be starting a program.
+        #[cfg(target_os = "linux")]
+        let flags = flags | OpenptFlags::CLOEXEC;
+        let master = openpt(flags)?;
         fcntl_setfd(&master, FdFlags::CLOEXEC)?;
         grantpt(&master)?;
         unlockpt(&master)?;

@@ -22,6 +22,9 @@ pub(crate) type Stream = TcpStream;
 /// Timeout of a proof: the other side has nothing else to do.
 const PROOF: Duration = Duration::from_millis(500);
 
+/// Timeout of connecting. Windows tries a port that nobody has for two seconds.
+const CONNECT: Duration = Duration::from_millis(100);
+
 /// Characters of a proof: 128 random bits.
 const PROOF_BYTES: usize = 32;
 
@@ -105,6 +108,12 @@ impl Listener {
         })
     }
 
+    /// Ends the wait of [`Self::accept`], whatever has become of the file.
+    pub(crate) fn waker(&self) -> impl FnOnce() + Send + 'static {
+        let port = self.meeting.port;
+        move || drop(TcpStream::connect((Ipv4Addr::LOCALHOST, port)))
+    }
+
     /// Waits for a program that connects.
     ///
     /// # Errors
@@ -154,7 +163,10 @@ impl Arrival {
 /// Nobody does, or another program has got the port since.
 pub(crate) fn connect(path: &Path) -> io::Result<Stream> {
     let meeting = Meeting::read(path)?;
-    let mut stream = TcpStream::connect((Ipv4Addr::LOCALHOST, meeting.port))?;
+    let address = (Ipv4Addr::LOCALHOST, meeting.port).into();
+    // A timeout is not that of a program that hangs: nobody is there.
+    let mut stream =
+        TcpStream::connect_timeout(&address, CONNECT).map_err(|_| ErrorKind::ConnectionRefused)?;
     stream.set_nodelay(true)?;
     stream.write_all(meeting.secret.as_bytes())?;
     expect(&mut stream, &meeting.answer)?;
@@ -218,6 +230,16 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_wait_ends_even_if_the_file_is_gone() {
+        let (_folder, path, listener) = listening();
+        let wake = listener.waker();
+        fs::remove_file(path).unwrap();
+        let waiting = thread::spawn(move || listener.accept());
+        wake();
+        assert!(waiting.join().unwrap().unwrap().enter().is_err());
+    }
+
     /// The file of a killed program, whose port another one has got.
     #[test]
     fn a_stranger_behind_an_old_file_is_noticed() {
@@ -232,9 +254,12 @@ mod tests {
             ErrorKind::PermissionDenied
         );
         inside.join().unwrap().unwrap();
-        for text in ["", "1 2", "x 0 0", "70000 0 0"] {
-            fs::write(&path, text).unwrap();
-            assert!(Meeting::read(&path).is_err(), "{text}");
+        let proof = "0".repeat(PROOF_BYTES);
+        for port in ["", "1 2", "x", "70000", "-1"] {
+            fs::write(&path, format!("{port} {proof} {proof}")).unwrap();
+            assert!(Meeting::read(&path).is_err(), "{port}");
         }
+        fs::write(&path, format!("1 {proof} {}", &proof[1..])).unwrap();
+        assert!(Meeting::read(&path).is_err());
     }
 }

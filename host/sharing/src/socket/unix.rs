@@ -34,6 +34,12 @@ impl Listener {
         Ok(listener)
     }
 
+    /// Ends the wait of [`Self::accept`].
+    pub(crate) fn waker(&self) -> impl FnOnce() + Send + 'static {
+        let path = self.path.clone();
+        move || drop(UnixStream::connect(path))
+    }
+
     /// Waits for a program that connects.
     ///
     /// # Errors
@@ -57,7 +63,7 @@ impl Arrival {
     /// Lets it in: only this user can open the socket.
     ///
     /// # Errors
-    /// None: where there are no such sockets there are.
+    /// Never here; the loopback's may fail.
     #[expect(clippy::unnecessary_wraps, reason = "the same as on other systems")]
     pub(crate) fn enter(self) -> io::Result<Stream> {
         Ok(self.0)
