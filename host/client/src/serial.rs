@@ -190,7 +190,7 @@ fn pseudo_terminal(path: &str) -> Option<std::os::fd::OwnedFd> {
     is_one.then(|| rustix::fs::open(path, flags, Mode::empty()).ok())?
 }
 
-/// Whether the system has this port.
+/// Whether the system lists a serial port of this name.
 fn is_listed(path: &str) -> bool {
     let name = path.trim_start_matches(r"\\.\");
     let ports = serialport::available_ports().unwrap_or_default();

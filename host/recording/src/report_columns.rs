@@ -1,4 +1,4 @@
-//! What the report of a recording draws: the columns that each has, and those of the effects
+//! The columns of a recording's report: those that every report draws, and those of the effects
 //! that were on besides crepitus.
 
 use crate::analysis::Derived;

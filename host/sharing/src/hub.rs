@@ -331,7 +331,7 @@ impl State {
     }
 }
 
-/// What the others keep of this program's own member.
+/// The note with this program's own subscription and lease, for the others to keep.
 fn heir_of(member: &Member) -> Option<Chunk> {
     let heir = Note::Heir {
         open: member.open.clone(),

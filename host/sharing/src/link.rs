@@ -22,7 +22,7 @@ pub(crate) struct Link {
     /// Frames of the device that were received and not read.
     unread: VecDeque<u8>,
     notes: VecDeque<Note>,
-    /// What the program that serves has left open, unless it has ended in order.
+    /// Subscription and lease of the program that serves, unless it has ended in order.
     heir: Option<Note>,
     /// It has closed its end.
     is_cut: bool,
