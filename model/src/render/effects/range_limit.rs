@@ -392,6 +392,17 @@ pub struct RangeLimit<F> {
     torque_nm: F,
 }
 
+impl<F: Real> RangeLimit<F> {
+    /// After a commit both ends may push, against each other: their share in common, which nobody
+    /// feels, goes. What one of them then loses is lost of the sum, too.
+    fn cancel(&mut self) {
+        let (extension, flexion) = (&mut self.extension.play, &mut self.flexion.play);
+        let common_nm = extension.torque_nm().at_most(flexion.torque_nm());
+        extension.release(common_nm);
+        flexion.release(common_nm);
+    }
+}
+
 impl<F: Real> Law for RangeLimit<F> {
     type Real = F;
     type Settings = RangeLimitSettings;
@@ -512,6 +523,7 @@ impl<F: Real> Law for RangeLimit<F> {
     }
 
     fn adopt(&mut self, coefficients: RangeLimitCoefficients<F>, slew_nm: F) {
+        self.cancel();
         let (old, new) = (&self.with, &coefficients);
         for (wall, from, to) in [
             (&mut self.extension, &old.extension, &new.extension),
@@ -524,6 +536,7 @@ impl<F: Real> Law for RangeLimit<F> {
     }
 
     fn release(&mut self, slew_nm: F) {
+        self.cancel();
         self.extension.play.release(slew_nm);
         self.flexion.play.release(slew_nm);
         self.torque_nm = self.flexion.play.torque_nm() - self.extension.play.torque_nm();
