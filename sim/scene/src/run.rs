@@ -89,7 +89,7 @@ pub enum RunError<E> {
     Diverged(#[from] Diverged),
 }
 
-/// A state is NaN or infinite: what computes it is unstable with this step.
+/// A state is NaN, infinite, or soon will be: what computes it is unstable with this step.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Diverged {
     /// That of the object.
@@ -107,8 +107,8 @@ pub enum Diverged {
     },
     /// That of the shaft, which a plant moves and the device's torque of the step before.
     #[error(
-        "the plant and the device diverged: by t = {by_s} s the shaft's angle is no number, with steps of {step_s} s; \
-         choose shorter ones, and a solver that propagates exactly"
+        "the plant and the device diverged: by t = {by_s} s the shaft's angle or speed is no number, or above 1e15, with steps \
+         of {step_s} s; choose shorter ones, and a solver that propagates exactly"
     )]
     Shaft {
         /// Time of detection, s.

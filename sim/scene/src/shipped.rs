@@ -126,6 +126,7 @@ struct Repeated {
     data_sha256: Option<String>,
     /// Of the program.
     version: Option<String>,
+    commit: Option<String>,
 }
 
 impl Source {
@@ -183,8 +184,14 @@ impl Source {
                 summary: path.to_owned(),
                 data_sha256: word(&summary["data"]["sha256"]),
                 version: word(&summary["crepitus_version"]),
+                commit: word(&summary["crepitus_commit"]),
             }),
         })
+    }
+
+    /// Of a run that is repeated, the commit of the program that it was of.
+    pub fn commit(&self) -> Option<&str> {
+        self.repeated.as_ref()?.commit.as_deref()
     }
 
     /// The scene, read and checked.

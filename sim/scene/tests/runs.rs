@@ -338,13 +338,16 @@ fn a_plant_that_diverges_is_not_the_solvers_fault() {
         "version = 1\ntitle = \"t\"\nduration_s = 6\ndevice = true\n[motion]\n{motion}\n[solver]\n{solver}\n{hand}"
     );
     let scene = Scene::parse(Path::new("t.toml"), &text, &Overrides::default()).unwrap();
-    let error = run(&scene, &mut Keep::default()).expect_err("steps of half a second");
+    let mut kept = Keep::default();
+    let error = run(&scene, &mut kept).expect_err("steps of half a second");
     assert!(matches!(error, RunError::Diverged(Diverged::Shaft { .. })));
     let text = error.to_string();
     assert!(
-        text.contains("the shaft's angle is no number, with steps of 0.5 s"),
+        text.contains("angle or speed is no number, or above 1e15, with steps of 0.5 s"),
         "{text}"
     );
+    // Up to there its trace holds numbers.
+    assert!(kept.rows.iter().flatten().all(|x| x.is_finite()));
 }
 
 /// A shaft too fast to be believed: a drive holds its torque, lets go, and catches up or begins

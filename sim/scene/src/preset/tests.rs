@@ -117,7 +117,11 @@ fn capsular_is_firm_in_extension_and_soft_in_flexion() {
     let (extension, flexion) = ends("capsular");
     assert_eq!(extension, ends("end-feel-firm").0);
     assert_eq!(flexion, ends("end-feel-soft").1);
-    assert!((10.0_f64 / 35.0 - 0.29).abs() < 5e-3);
+    // Of a knee that bends to 140 degrees.
+    let capsular = find("capsular").unwrap().effect_settings();
+    let limits = capsular.range_limit.unwrap();
+    let deficits = limits.extension_limit_deg / (140.0 - limits.flexion_limit_deg);
+    assert!((deficits - 0.29).abs() < 5e-3, "{deficits}");
     let cap_deg = |feel: EndFeel| feel.cap_rad().to_degrees();
     for (name, deg, spring) in [
         ("end-feel-soft", 6.9, 85.0),

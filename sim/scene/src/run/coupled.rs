@@ -137,15 +137,16 @@ struct Run {
 const FASTEST: f64 = 1e15;
 
 impl Run {
-    /// Whether a state is no number, and which: a shaft that is none makes an object none, and
-    /// in single precision one whose square overflows does.
+    /// Whether a state is no number, or soon will be, and which: a shaft that is none makes an
+    /// object none, and one whose square overflows makes the plant's others none.
     fn diverged(&self, scene: &Scene, by_s: f64) -> Option<Diverged> {
         let shaft = self.plant.shaft();
-        if self.device.is_finite() && shaft.angle_rad.is_finite() {
+        let fits = |x: f64| x.abs() < FASTEST;
+        let shaft_fits = fits(shaft.angle_rad) && fits(shaft.omega_rad_s);
+        if self.device.is_finite() && shaft_fits {
             return None;
         }
-        let fits = |x: f64| x.abs() < FASTEST;
-        if !(fits(shaft.angle_rad) && fits(shaft.omega_rad_s)) {
+        if !shaft_fits {
             return Some(Diverged::Shaft {
                 by_s,
                 step_s: self.tick_s,
