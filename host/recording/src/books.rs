@@ -192,6 +192,8 @@ pub(crate) struct Ledger {
     start: Option<u8>,
     /// The device's own count.
     said: u32,
+    /// Of all segments, as they were said to begin.
+    begins: Vec<Begin>,
     /// A part of the file before the next block is damaged.
     is_damaged: bool,
     /// So is the part that says where the first subscription begins.
@@ -218,6 +220,18 @@ impl Ledger {
         self.next_tick = begin.first_tick;
         self.start = Some(begin.start);
         self.said = begin.dropped;
+        self.begins.push(begin);
+    }
+
+    /// True if a subscription that begins like this one is older than what was read last.
+    pub(crate) fn has_passed(&self, begin: Begin) -> bool {
+        let is_latest = self.start == Some(begin.start) && self.next_tick == begin.first_tick;
+        !is_latest && self.begins.contains(&begin)
+    }
+
+    /// True if ticks of the same start go back with it.
+    pub(crate) fn goes_back(&self, begin: Begin) -> bool {
+        self.start == Some(begin.start) && begin.first_tick < self.next_tick
     }
 
     /// Takes the next block; false, and nothing else, if it is not newer than

@@ -22,6 +22,14 @@ impl Findings {
         }
     }
 
+    /// Adds others behind them.
+    pub(crate) fn extend(&mut self, others: Self) {
+        for finding in others.listed {
+            self.add(finding);
+        }
+        self.more += others.more;
+    }
+
     /// True if nothing was found.
     pub fn is_empty(&self) -> bool {
         self.listed.is_empty()

@@ -97,6 +97,11 @@ impl InForce<'_> {
         self.is_known.then(|| values_of(&self.known))
     }
 
+    /// All values as they were known last; defaults for those that never were.
+    pub(crate) fn last_values(&self) -> Values {
+        values_of(&self.known)
+    }
+
     /// The settings of the stick-slip joint, if they are known.
     pub fn joint_settings(&self) -> Option<Settings> {
         Some(Settings {

@@ -50,6 +50,9 @@ pub(crate) struct About {
     pub(crate) is_complete: bool,
     pub(crate) parameters: History,
     pub(crate) books: Books,
+    /// Of the file that it was made of, in sentences.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(crate) damage: Vec<String>,
 }
 
 /// Position of the checksum in the bytes of a footer.

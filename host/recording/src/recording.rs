@@ -88,6 +88,8 @@ pub struct Recording {
     is_complete: bool,
     cut_bytes: u64,
     findings: Findings,
+    /// Damage of the file that this one was made of, in sentences.
+    earlier_damage: Vec<String>,
     source: Source,
 }
 
@@ -145,6 +147,7 @@ impl Recording {
             is_complete: scanned.is_complete,
             cut_bytes: scanned.cut_bytes,
             findings: scanned.findings,
+            earlier_damage: Vec::new(),
             source: Source::Log(scanned.sorted.unwrap_or(file)),
         })
     }
@@ -160,6 +163,7 @@ impl Recording {
             is_complete: read.is_complete,
             cut_bytes: 0,
             findings,
+            earlier_damage: read.damage,
             source: Source::Parquet(reader),
         })
     }
@@ -200,14 +204,8 @@ impl Recording {
 
     /// Damage and missing samples, in sentences.
     pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
-        if !self.findings.is_empty() {
-            warnings.push(
-                "The file is damaged, and this is what could be read of it. What is wrong:"
-                    .to_owned(),
-            );
-            warnings.extend(self.findings.sentences());
-        }
+        let mut warnings = self
+            .damage("The file is damaged, and this is what could be read of it. What is wrong:");
         if !self.is_complete {
             let cut = match self.cut_bytes {
                 0 => String::new(),
@@ -215,11 +213,30 @@ impl Recording {
                 bytes => format!(" Its last {bytes} bytes are no whole sample."),
             };
             warnings.push(format!(
-                "The recording is incomplete: the program that made it was stopped before its end.{cut}"
+                "The recording is incomplete, its end is missing: perhaps its program still runs, was stopped \
+                 or could not write.{cut}"
             ));
         }
         warnings.extend(self.missing());
         warnings
+    }
+
+    /// Damage, to be said of a file that is made of this one.
+    #[cfg(feature = "parquet")]
+    pub(crate) fn inherited_damage(&self) -> Vec<String> {
+        self.damage(
+            "It was made of a damaged file, and this is what could be read of that. What was wrong:",
+        )
+    }
+
+    /// That of the file it was made of, and its own behind a heading.
+    fn damage(&self, heading: &str) -> Vec<String> {
+        let mut damage = self.earlier_damage.clone();
+        if !self.findings.is_empty() {
+            damage.push(heading.to_owned());
+            damage.extend(self.findings.sentences());
+        }
+        damage
     }
 
     fn missing(&self) -> Option<String> {
@@ -349,10 +366,9 @@ impl<'r> LogRows<'r> {
         let Some(block) = self.reader.next()? else {
             return Ok(None);
         };
-        if self.in_force.at(self.count)
-            && let Some(values) = self.in_force.values()
-        {
-            self.samples.set(&values);
+        if self.in_force.at(self.count) {
+            // Where they are unknown, a finding says that these are taken.
+            self.samples.set(&self.in_force.last_values());
         }
         self.count += block.samples.len() as u64;
         let rows: Vec<_> = self.samples.rows(&block).collect();

@@ -2,10 +2,12 @@
 
 use super::frame::{Checkpoint, Content, Entry, Owner};
 use super::{FRAME_LIMIT, MAGIC, repair};
-use crate::books::Ledger;
+use crate::books::{Begin, Ledger, Totals};
 use crate::findings::Findings;
 use crate::metadata::Metadata;
-use crate::parameters::{History, Named, ParameterSet};
+use crate::parameters::{History, Named, ParameterSet, values_of};
+use crepitus_model::control::encoder::EncoderSettings;
+use crepitus_model::parameters::Source;
 use crepitus_protocol::frame::DELIMITER;
 use crepitus_protocol::telemetry::Block;
 use sha2::{Digest, Sha256};
@@ -30,14 +32,20 @@ pub(crate) struct LogReader<R> {
     entries: u64,
     /// The set that changes refer to is missing.
     is_history_broken: bool,
+    /// What angles follow from meanwhile.
+    assumed: Findings,
     checkpoints: u64,
     /// Tick of the last checkpoint.
     checked_tick: u64,
+    /// The latest sums of a checkpoint.
+    said: Option<Totals>,
     /// Damage since the last checkpoint was found.
     is_noted: bool,
     /// Bytes that are no frames, from an offset on.
     damage: Option<(u64, u64)>,
     repeated: u64,
+    /// First tick of a subscription that goes back, and the tick that was due before it.
+    went_back: Option<(u64, u64)>,
     is_ended: bool,
     findings: Findings,
 }
@@ -58,6 +66,8 @@ pub(crate) struct Scanned {
     pub(crate) history: History,
     pub(crate) is_complete: bool,
     is_disordered: bool,
+    said: Option<Totals>,
+    assumed: Findings,
     /// Bytes at the end that are no frame.
     pub(crate) cut_bytes: u64,
     pub(crate) findings: Findings,
@@ -67,24 +77,41 @@ pub(crate) struct Scanned {
 
 /// Reads a whole file. Of one whose frames are out of order, a copy is made.
 pub(crate) fn scan(file: &File) -> io::Result<Scanned> {
-    let scanned = read_all(file)?;
-    if !scanned.is_disordered {
-        return Ok(scanned);
+    let mut scanned = read_all(file, None)?;
+    if scanned.is_disordered {
+        let sorted = repair::sorted(file)?;
+        let copy = read_all(&sorted, scanned.said)?;
+        scanned = Scanned {
+            ledger: copy.ledger,
+            history: copy.history,
+            assumed: copy.assumed,
+            sorted: Some(sorted),
+            ..scanned
+        };
     }
-    let sorted = repair::sorted(file)?;
-    let copy = read_all(&sorted)?;
-    Ok(Scanned {
-        ledger: copy.ledger,
-        history: copy.history,
-        sorted: Some(sorted),
-        ..scanned
-    })
+    // Said first: numbers depend on it.
+    let mut findings = std::mem::take(&mut scanned.assumed);
+    findings.extend(scanned.findings);
+    scanned.findings = findings;
+    Ok(scanned)
 }
 
-fn read_all(mut file: &File) -> io::Result<Scanned> {
+/// Reads a file, or a copy without checkpoints, of which the last one `said` this.
+fn read_all(mut file: &File, mut said: Option<Totals>) -> io::Result<Scanned> {
     file.seek(SeekFrom::Start(0))?;
     let mut reader = LogReader::new(BufReader::with_capacity(1 << 16, file))?;
-    while reader.next()?.is_some() {}
+    while let Some(block) = reader.next()? {
+        let produced = reader.ledger.books().totals.produced;
+        if let Some(said) = said.take_if(|said| said.produced <= produced) {
+            // This block may have come after it: where those before it are missing.
+            let since = (produced - said.produced).min(block.samples.len() as u64);
+            let received = said.received.saturating_add(since);
+            reader.ledger.expect_received(received);
+        }
+    }
+    if let Some(said) = said {
+        reader.ledger.expect_received(said.received);
+    }
     Ok(reader.finish())
 }
 
@@ -111,11 +138,14 @@ impl<R: BufRead> LogReader<R> {
             known: Named::new(),
             entries: 0,
             is_history_broken: false,
+            assumed: Findings::default(),
             checkpoints: 0,
             checked_tick: 0,
+            said: None,
             is_noted: false,
             damage: None,
             repeated: 0,
+            went_back: None,
             is_ended: false,
             findings,
         })
@@ -199,7 +229,7 @@ impl<R: BufRead> LogReader<R> {
             }
             Entry::Header(metadata) => self.metadata = Some(*metadata),
             _ if !is_own => {}
-            Entry::Subscribed(begin) => self.ledger.subscribed(begin),
+            Entry::Subscribed(begin) => self.subscribed(begin),
             Entry::Parameters {
                 number,
                 revision,
@@ -211,18 +241,38 @@ impl<R: BufRead> LogReader<R> {
         None
     }
 
+    fn subscribed(&mut self, begin: Begin) {
+        if self.ledger.has_passed(begin) {
+            self.repeat(begin.first_tick);
+        } else {
+            let goes_back = self.ledger.goes_back(begin);
+            self.went_back = goes_back.then_some((begin.first_tick, self.ledger.next_tick()));
+            self.ledger.subscribed(begin);
+        }
+    }
+
+    /// What stands there is there already, or belongs before what was read.
+    fn repeat(&mut self, tick: u64) {
+        self.repeated += 1;
+        if self.repeated == 1 {
+            self.findings.add(format!(
+                "Samples or entries are doubled or out of order, first those of tick {tick}"
+            ));
+        }
+        self.is_noted = true;
+    }
+
     fn block(&mut self, block: Box<Block>) -> Option<Box<Block>> {
         let row = self.ledger.books().totals.received;
         if !self.ledger.block(&block) {
-            self.repeated += 1;
-            if self.repeated == 1 {
-                self.findings.add(format!(
-                    "Samples are doubled or out of order, first those of tick {}",
-                    block.first_tick
-                ));
-            }
-            self.is_noted = true;
+            self.repeat(block.first_tick);
             return None;
+        }
+        // Ticks go on as before it: the drive has not restarted, the entry stands too late.
+        if let Some((first_tick, next_tick)) = self.went_back.take()
+            && next_tick <= block.first_tick
+        {
+            self.repeat(first_tick);
         }
         match self.history.0.last_mut() {
             // They came before it.
@@ -232,7 +282,7 @@ impl<R: BufRead> LogReader<R> {
             Some(set) if set.revision == block.revision.0 => {}
             // Their entry is damaged.
             _ => {
-                self.is_history_broken = true;
+                self.break_history(block.first_tick);
                 self.history.0.push(ParameterSet {
                     revision: block.revision.0,
                     first_row: row,
@@ -244,9 +294,32 @@ impl<R: BufRead> LogReader<R> {
         Some(block)
     }
 
+    /// Values are not known from a tick on, but angles are computed all the same.
+    fn break_history(&mut self, tick: u64) {
+        if std::mem::replace(&mut self.is_history_broken, true) {
+            return;
+        }
+        let which = if self.known.is_empty() {
+            "default"
+        } else {
+            "last known"
+        };
+        let encoder: EncoderSettings = values_of(&self.known).read();
+        self.assumed.add(format!(
+            "Parameters are unknown from tick {tick} on, up to the next entry with all of them: angles and \
+             speeds there are those of the {which} encoder, {} counts a motor turn and gear ratio {}",
+            4.0 * encoder.lines,
+            encoder.gear_ratio
+        ));
+    }
+
     fn parameters(&mut self, number: u64, revision: u32, is_whole: bool, values: Option<Named>) {
         let was_broken = self.is_history_broken || number != self.entries;
-        self.is_history_broken = was_broken && !is_whole;
+        if was_broken && !is_whole {
+            self.break_history(self.ledger.next_tick());
+        } else {
+            self.is_history_broken = false;
+        }
         self.entries = number + 1;
         let mut values = values.filter(|_| !self.is_history_broken);
         if let Some(values) = &mut values {
@@ -289,7 +362,12 @@ impl<R: BufRead> LogReader<R> {
             ));
         }
         self.checkpoints = checkpoint.number + 1;
-        self.ledger.expect_received(checkpoint.totals.received);
+        // In a file that is out of order, checkpoints may be, too.
+        let received = checkpoint.totals.received;
+        if self.said.is_none_or(|said| said.received <= received) {
+            self.said = Some(checkpoint.totals);
+        }
+        self.ledger.expect_received(received);
         self.is_ended = checkpoint.is_end;
         if checkpoint.is_end && self.findings.is_empty() {
             let totals = self.ledger.books().totals;
@@ -320,6 +398,8 @@ impl<R: BufRead> LogReader<R> {
             cut_bytes,
             findings: self.findings,
             is_disordered: self.repeated > 0,
+            said: self.said,
+            assumed: self.assumed,
             sorted: None,
         }
     }

@@ -4,22 +4,24 @@
 use super::MAGIC;
 use super::frame::{Content, Entry, Owner};
 use crepitus_protocol::frame::DELIMITER;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 
-/// A frame and where it belongs: the ticks of a start of the drive, or, of an
-/// entry, the block that follows it.
+/// A frame and where it belongs: the ticks of a start of the drive, or, of
+/// parameters, the block that follows them.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     start: u8,
     tick: u64,
+    /// A block stands behind the entries of its tick.
+    is_block: bool,
     from: u64,
     bytes: u64,
 }
 
-/// Copies what is readable, blocks by start and tick, each once; entries stay
-/// before the block that they stand before. Checkpoints are left out.
+/// Copies what is readable: blocks and subscriptions by start and tick, entries each once;
+/// parameters stay before the block that they stand before. Checkpoints are left out.
 pub(super) fn sorted(file: &File) -> io::Result<File> {
     let (header, places) = places(file)?;
     let mut copy = BufWriter::new(tempfile::tempfile()?);
@@ -40,6 +42,7 @@ fn places(mut file: &File) -> io::Result<(Option<Place>, Vec<Place>)> {
     file.seek(SeekFrom::Start(MAGIC.len() as u64))?;
     let mut input = BufReader::new(file);
     let (mut header, mut places, mut waiting) = (None, Vec::new(), Vec::new());
+    let mut entries = HashSet::new();
     let mut owner = Owner::default();
     let mut from = MAGIC.len() as u64;
     let mut chunk = Vec::new();
@@ -55,6 +58,7 @@ fn places(mut file: &File) -> io::Result<(Option<Place>, Vec<Place>)> {
         let mut place = Place {
             start: 0,
             tick: 0,
+            is_block: false,
             from,
             bytes,
         };
@@ -73,12 +77,18 @@ fn places(mut file: &File) -> io::Result<(Option<Place>, Vec<Place>)> {
                     };
                     places.push(entry);
                 }
+                place.is_block = true;
                 places.push(place);
             }
             Some(Content::Entry(entry)) => match *entry {
                 Entry::Header(_) => header = header.or(Some(place)),
                 Entry::Checkpoint(_) => {}
-                _ => waiting.push(place),
+                _ if !entries.insert(chunk.clone()) => {}
+                Entry::Subscribed(begin) => {
+                    (place.start, place.tick) = (begin.start, begin.first_tick);
+                    places.push(place);
+                }
+                Entry::Parameters { .. } => waiting.push(place),
             },
             None => {}
         }
@@ -90,7 +100,7 @@ fn places(mut file: &File) -> io::Result<(Option<Place>, Vec<Place>)> {
         (*sum, *count) = (*sum + at, *count + 1);
     }
     let rank = |place: &Place| sums.get(&place.start).map(|(sum, count)| sum / count);
-    // Stable: entries stay before their block.
-    places.sort_by_key(|place| (rank(place), place.tick));
+    // Stable: entries stay in their order.
+    places.sort_by_key(|place| (rank(place), place.start, place.tick, place.is_block));
     Ok((header, places))
 }

@@ -93,7 +93,7 @@ pub(super) fn write<W: Write + Send>(
     let mut indices = Vec::with_capacity(rows.len());
     let mut known = Vec::new();
     for row in rows {
-        let index = *places.entry(row.flags.0).or_insert_with(|| {
+        let index = *places.entry((row.flags.0, row.phases)).or_insert_with(|| {
             known.push(words::of(row).map(|word| ByteArray::from(word.into_bytes())));
             known.len() - 1
         });

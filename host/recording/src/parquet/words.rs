@@ -67,6 +67,23 @@ pub(super) fn read([phase, event, limit, notes]: &Words) -> io::Result<(SampleFl
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_model::render::effects::{EffectSpec, SPECS};
+
+    /// All effects at rest, each of them in each of its phases, and all in their last one.
+    fn all_phases() -> Vec<Phases> {
+        let mut all = vec![Phases::default()];
+        for spec in SPECS {
+            for name in spec.phases.iter().flat_map(|phases| phases.names).skip(1) {
+                all.push(Phases::default().with_named(spec.name, name).unwrap());
+            }
+        }
+        let last = |phases: Phases, spec: &EffectSpec| {
+            let name = spec.phases.and_then(|phases| phases.names.last());
+            name.map_or(phases, |name| phases.with_named(spec.name, name).unwrap())
+        };
+        all.push(SPECS.iter().fold(Phases::default(), last));
+        all
+    }
 
     #[test]
     fn flags_read_back_from_their_words() {
@@ -76,17 +93,21 @@ mod tests {
                 SampleFlags::SETTLING | SampleFlags::LATE,
                 SampleFlags::LOST | SampleFlags::BREAK,
                 SampleFlags::BREAK | SampleFlags::STICK,
+                SampleFlags::STICK | SampleFlags::CHIRP,
             ] {
                 for sign in [-1, 0, 1] {
                     let flags = SampleFlags(bits)
                         .with_phase(sign)
                         .with(SampleFlags::ENERGISED, reason != LimitReason::NotArmed)
                         .with_limit(reason);
-                    let row = Row {
-                        flags,
-                        ..Row::default()
-                    };
-                    assert_eq!(read(&of(&row)).unwrap(), (flags, row.phases));
+                    for phases in all_phases() {
+                        let row = Row {
+                            flags,
+                            phases,
+                            ..Row::default()
+                        };
+                        assert_eq!(read(&of(&row)).unwrap(), (flags, phases));
+                    }
                 }
             }
         }

@@ -49,6 +49,7 @@ pub(crate) fn write(
         is_complete: recording.is_complete(),
         parameters: recording.parameters().clone(),
         books: recording.books().clone(),
+        damage: recording.inherited_damage(),
     };
     let id = about.metadata.id.clone();
     let mut writer = Writer::new(file, id, serde_json::to_string(&about)?)?;

@@ -2,8 +2,9 @@
 //! readable is kept.
 
 use crate::support::{
-    check_books, is_part, mangled, open, recorded, rows, rows_of, salvaged, sent,
+    Sent, check_books, is_part, mangled, open, recorded, rows, rows_of, salvaged, sent,
 };
+use crepitus_protocol::parameters::id;
 use crepitus_recording::{Damage, ReadError, Recording};
 use std::fs;
 use std::ops::Range;
@@ -56,6 +57,16 @@ impl Bench {
         let said = self.check(bytes, rows_least);
         let produced = salvaged(&self.path()).books().totals.produced;
         assert!(produced <= self.produced, "{produced} samples: {said}");
+        said
+    }
+
+    /// Behind the check, its books and parameters are those of the whole file.
+    fn check_mended(&self, bytes: &[u8]) -> String {
+        let said = self.check_in_order(bytes, self.all.len());
+        let whole = open(&self.folder.path().join("whole")).unwrap();
+        let salvaged = salvaged(&self.path());
+        assert_eq!(salvaged.books(), whole.books(), "{said}");
+        assert_eq!(salvaged.parameters(), whole.parameters(), "{said}");
         said
     }
 
@@ -134,6 +145,101 @@ fn frames_that_are_missing_doubled_or_elsewhere_are_noticed() {
             .concat();
             // An entry that stands elsewhere costs what depends on it, no row.
             bench.check(&swapped, rows - 20);
+        }
+    }
+}
+
+/// No restart of the drive, and no row twice.
+#[test]
+fn samples_that_are_doubled_with_the_begin_of_their_subscription_are_counted_once() {
+    let bench = Bench::new();
+    let frames = bench.frames();
+    let w = &bench.whole;
+    for (from, to) in [(2, 500), (600, 900)] {
+        let (from, to) = (frames[from].start, frames[to].start);
+        let said = bench.check_mended(&[&w[..to], &w[from..]].concat());
+        assert!(said.contains("doubled"), "{said}");
+    }
+}
+
+#[test]
+fn the_begin_of_a_subscription_that_stands_too_late_is_put_back() {
+    let bench = Bench::new();
+    let frames = bench.frames();
+    let w = &bench.whole;
+    let mark = br#""entry":"subscribed""#;
+    let is_begin = |frame: &Range<usize>| w[frame.clone()].windows(mark.len()).any(|w| w == mark);
+    let begins: Vec<_> = (0..frames.len())
+        .filter(|n| is_begin(&frames[*n]))
+        .collect();
+    assert_eq!(begins.len(), 2);
+    for (begin, behind) in [(begins[0], 299), (begins[1], begins[1] + 40)] {
+        let (begin, behind) = (frames[begin].clone(), frames[behind].end);
+        let moved = [
+            &w[..begin.start],
+            &w[begin.end..behind],
+            &w[begin],
+            &w[behind..],
+        ]
+        .concat();
+        let said = bench.check_mended(&moved);
+        assert!(said.contains("out of order"), "{said}");
+    }
+}
+
+/// Frames at the edges of what was moved are damaged.
+#[test]
+fn samples_that_are_damaged_where_others_are_out_of_order_were_not_lost_on_the_way() {
+    let bench = Bench::new();
+    let frames = bench.frames();
+    let w = &bench.whole;
+    // The whole file, and one that was cut off behind its last checkpoint.
+    for (end, rows) in [
+        (w.len(), bench.all.len()),
+        (frames[frames.len() - 10].start, bench.all.len() - 9 * 20),
+    ] {
+        let (a, b, c) = (100_000, 104_096, 108_192);
+        let swapped = [&w[..a], &w[b..c], &w[a..b], &w[c..end]].concat();
+        bench.check(&swapped, rows - 10 * 20);
+        let totals = salvaged(&bench.path()).books().totals;
+        assert!(totals.damaged > 0);
+        assert_eq!(totals.received + totals.damaged, rows as u64);
+        assert_eq!((totals.by_device, totals.on_the_way()), (60, 20));
+    }
+}
+
+/// Angles are computed all the same.
+#[test]
+fn the_encoder_that_is_assumed_where_parameters_are_lost_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a");
+    let mut sent = sent(300);
+    for sent in &mut sent {
+        if let Sent::Parameters(_, values) = sent {
+            values.set(id::LINES, 1_000.0);
+        }
+    }
+    recorded(&path, "a test", &sent);
+    let whole = fs::read(&path).unwrap();
+    let all = rows_of(&sent);
+    for (number, tick, encoder, lines) in [
+        (0, 1_000, "default encoder, 2048 counts", 512.0),
+        (2, 8_940, "last known encoder, 4000 counts", 1_000.0),
+    ] {
+        let mark = format!(r#""number":{number},"revision""#).into_bytes();
+        let at = whole.windows(mark.len()).position(|window| window == mark);
+        let mut damaged = whole.clone();
+        damaged[at.expect("an entry in plain text")] ^= 1;
+        fs::write(&path, &damaged).unwrap();
+        let salvaged = salvaged(&path);
+        let said = salvaged.warnings().join("\n");
+        let from = format!("Parameters are unknown from tick {tick} on");
+        assert!(said.contains(&from) && said.contains(encoder), "{said}");
+        let rows = rows(&salvaged);
+        assert_eq!(rows.len(), all.len());
+        for (row, whole) in rows.iter().zip(&all).filter(|(row, _)| row.tick >= tick) {
+            let expected = whole.angle_rad * 1_000.0 / lines;
+            assert!((row.angle_rad - expected).abs() < 1e-9, "{}", row.tick);
         }
     }
 }

@@ -68,11 +68,11 @@ fn bytes(asked: &[Asked]) -> Vec<u8> {
 }
 
 /// Records on a disk until it fails.
-fn run(model: &Model) -> Result<(), String> {
+fn run(model: &Model, blocks: u64) -> Result<(), String> {
     let disk = model.clone();
     let mut recorder =
         Recorder::on(disk, Path::new("x"), &metadata("a test")).map_err(|e| e.to_string())?;
-    record(&mut recorder, &sent(1_100)).map_err(|e| e.to_string())?;
+    record(&mut recorder, &sent(blocks)).map_err(|e| e.to_string())?;
     recorder.finish().map(|_| ()).map_err(|e| e.to_string())
 }
 
@@ -80,7 +80,7 @@ fn run(model: &Model) -> Result<(), String> {
 fn whatever_write_fails_what_was_written_before_is_read() {
     let all = rows_of(&sent(1_100));
     let whole = Model::default();
-    run(&whole).unwrap();
+    run(&whole, 1_100).unwrap();
     let calls = whole.asked().len();
     assert!(calls > 50);
     let folder = tempfile::tempdir().unwrap();
@@ -92,7 +92,7 @@ fn whatever_write_fails_what_was_written_before_is_read() {
                 fails_at: Some((at, code)),
                 ..Model::default()
             };
-            let error = run(&model).unwrap_err();
+            let error = run(&model, 1_100).unwrap_err();
             assert!(error.contains(word) && error.contains('x'), "{error}");
             let written = bytes(&model.asked());
             if written.len() < 3_000 {
@@ -115,20 +115,32 @@ fn whatever_write_fails_what_was_written_before_is_read() {
 /// anything: a part of it, or zeros where data never arrived.
 #[test]
 fn whenever_power_is_cut_everything_up_to_the_last_second_is_read() {
-    let all = rows_of(&sent(1_100));
+    let all = rows_of(&sent(3_300));
     let model = Model::default();
-    run(&model).unwrap();
+    run(&model, 3_300).unwrap();
     let asked = model.asked();
-    let syncs = asked.iter().filter(|asked| matches!(asked, Asked::Sync));
-    assert!(syncs.count() >= 2, "every second, and at the end");
+    let syncs: Vec<_> = (1..=asked.len())
+        .filter(|end| matches!(asked[end - 1], Asked::Sync))
+        .collect();
+    assert_eq!(syncs.len(), 4, "every second, and at the end");
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a");
+    // The rows that are durable after so many syncs: each second whole, in the end all.
+    let mut durable_rows = vec![0];
+    for (second, end) in (1..).zip(&syncs) {
+        std::fs::write(&path, bytes(&asked[..*end])).unwrap();
+        let kept = rows(&crate::support::open(&path).unwrap()).len();
+        let least = all.len().min(second * 20_000);
+        assert!(kept >= least, "sync {second}: {kept} of {least}");
+        durable_rows.push(kept);
+    }
     let mut random = fastrand::Rng::with_seed(3);
-    for cut in 0..=asked.len() {
-        let durable = asked[..cut]
-            .iter()
-            .rposition(|asked| matches!(asked, Asked::Sync))
-            .map_or(0, |at| at + 1);
+    // At the begin and around each sync everywhere, else now and then: each cut reads the file.
+    let is_near = |cut: usize| cut < 10 || syncs.iter().any(|end| end.abs_diff(cut) <= 1);
+    for cut in (0..=asked.len()).filter(|cut| cut.is_multiple_of(8) || is_near(*cut)) {
+        let seconds = syncs.partition_point(|end| *end <= cut);
+        let durable = seconds.checked_sub(1).map_or(0, |last| syncs[last]);
+        let sure = durable_rows[seconds];
         let safe = bytes(&asked[..durable]);
         let rest = bytes(&asked[durable..cut]);
         let part = rest[..random.usize(..=rest.len())].to_vec();
@@ -139,12 +151,6 @@ fn whenever_power_is_cut_everything_up_to_the_last_second_is_read() {
             }
         }
         let zeros = vec![0; rest.len()];
-        std::fs::write(&path, &safe).unwrap();
-        let sure = if safe.len() < 3_000 {
-            0
-        } else {
-            rows(&crate::support::open(&path).unwrap()).len()
-        };
         for tail in [part, holes, zeros] {
             let file = [&safe[..], &tail[..]].concat();
             if file.len() < 3_000 || file[..21].iter().all(|byte| *byte == 0) {
@@ -197,7 +203,7 @@ fn a_disk_that_stalls_does_not_stall_the_program() {
         "{longest:?}"
     );
     let direct = Model::default();
-    run(&direct).unwrap();
+    run(&direct, 1_100).unwrap();
     assert_eq!(bytes(&model.asked()).len(), bytes(&direct.asked()).len());
 }
 

@@ -98,6 +98,36 @@ fn the_file_holds_all_that_the_log_held() {
     );
 }
 
+/// A file that is whole, of one that was not, and another one of that.
+#[test]
+fn what_was_wrong_with_the_log_is_said_of_files_that_are_made_of_it() {
+    let bench = Bench::new(300);
+    let mut log = fs::read(bench.folder.path().join("log")).unwrap();
+    let middle = log.len() / 2;
+    log[middle] ^= 1;
+    let log = salvaged(&bench.write(&log));
+    let path = bench.folder.path().join("of the damaged one");
+    let file = File::create(&path).unwrap();
+    parquet_writer().unwrap()(&log, &file, &mut |_| true).unwrap();
+    let warnings = open(&path).unwrap().warnings();
+    assert!(
+        warnings[0].contains("was made of a damaged file"),
+        "{warnings:?}"
+    );
+    assert_eq!(warnings[1..], log.warnings()[1..]);
+    let again = bench.folder.path().join("again");
+    converted(&path, &again);
+    assert_eq!(open(&again).unwrap().warnings(), warnings);
+    // Its own damage is another matter.
+    let mut bytes = fs::read(&again).unwrap();
+    let late = bytes.len() - 100;
+    bytes[late] ^= 1;
+    let said = salvaged(&bench.write(&bytes)).warnings();
+    let earlier = warnings.len() - 1;
+    assert_eq!(said[..earlier], warnings[..earlier]);
+    assert!(said[earlier].contains("The file is damaged"), "{said:?}");
+}
+
 #[test]
 fn every_flipped_bit_is_noticed_and_costs_two_seconds_at_most() {
     // Two groups, the second one short.

@@ -1,16 +1,50 @@
 //! Blocks of a device, and recordings of them.
 
+use crepitus_model::render::effects::{Phases, SPECS};
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::parameters::id;
 use crepitus_protocol::telemetry::{
-    Block, BlockFlags, CoilCurrent, NO_CURRENT, Sample, SampleFlags,
+    Block, BlockFlags, CoilCurrent, EffectPhases, NO_CURRENT, Sample, SampleFlags,
 };
 use crepitus_protocol::{LimitReason, Revision, State, Values};
 use crepitus_recording::{Begin, Damage, Metadata, ReadError, Recorder, Recording, Row, Samples};
 use std::path::Path;
 
-/// Samples that differ from each other.
+/// Samples that differ from each other, with every flag and phase that there is.
 pub(crate) fn block(first_tick: u64, revision: u32, dropped: u32, start: u16) -> Block {
+    let mut block = plain(first_tick, revision, dropped, start);
+    let mut random = fastrand::Rng::with_seed(!first_tick ^ u64::from(start) << 40);
+    for sample in &mut block.samples {
+        for bit in [
+            SampleFlags::SETTLING,
+            SampleFlags::LOST,
+            SampleFlags::STICK,
+            SampleFlags::CHIRP,
+        ] {
+            sample.flags = sample.flags.with(bit, random.u8(..8) == 0);
+        }
+    }
+    block.phases = core::array::from_fn(|_| phases(&mut random));
+    block
+}
+
+/// Mostly all effects are at rest, else up to two are not.
+fn phases(random: &mut fastrand::Rng) -> EffectPhases {
+    let mut all = Phases::default();
+    if random.u8(..4) == 0 {
+        for spec in random.choose_multiple(SPECS, 2) {
+            if let Some(phases) = spec.phases
+                && let Some(name) = random.choice(phases.names)
+            {
+                all = all.with_named(spec.name, name).unwrap();
+            }
+        }
+    }
+    all.into()
+}
+
+/// The same with fewer flags and all effects at rest, as in the golden file.
+pub(crate) fn plain(first_tick: u64, revision: u32, dropped: u32, start: u16) -> Block {
     let mut random = fastrand::Rng::with_seed(first_tick ^ u64::from(start) << 40);
     let angle = |tick: u64| (900.0 * (tick as f64 * 2e-4).sin()) as i32;
     Block {
@@ -56,6 +90,11 @@ pub(crate) enum Sent {
 /// that is lost on the way, a lost connection, a restart of the drive, and
 /// parameters that change now and then.
 pub(crate) fn sent(blocks: u64) -> Vec<Sent> {
+    sent_of(blocks, block)
+}
+
+/// The same of blocks that are made like this.
+pub(crate) fn sent_of(blocks: u64, block: fn(u64, u32, u32, u16) -> Block) -> Vec<Sent> {
     let mut sent = vec![Sent::Subscribed(Begin {
         first_tick: 1_000,
         dropped: 60,
@@ -174,6 +213,7 @@ pub(crate) fn is_part(some: &[Row], all: &[Row]) -> bool {
                 row.current_a.map(f32::to_bits),
                 row.coil_a.map(f32::to_bits),
                 row.flags,
+                row.phases,
             )
         };
         key(a) == key(b)
@@ -190,7 +230,8 @@ pub(crate) fn mangled(whole: &[u8], random: &mut fastrand::Rng) -> Vec<u8> {
         let to = (from + 1 + random.usize(..30_000)).min(bytes.len());
         let part = bytes[from..to].to_vec();
         match random.u8(..5) {
-            0 => bytes.truncate(to.max(1_000)),
+            // By a byte at least.
+            0 => bytes.truncate((to - 1).max(1_000)),
             1 if bytes.len() > 60_000 => drop(bytes.drain(from..to)),
             1 | 2 => bytes[from..to].fill_with(|| random.u8(..)),
             3 => bytes.extend(part),

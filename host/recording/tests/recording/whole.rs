@@ -1,6 +1,8 @@
 //! Recordings that ended in order, or were cut off.
 
-use crate::support::{check_books, metadata, open, record, recorded, rows, rows_of, sent};
+use crate::support::{
+    check_books, metadata, open, plain, record, recorded, rows, rows_of, sent, sent_of,
+};
 use crepitus_recording::{Cause, ReadError, RecordError, Recorder, Totals};
 use std::fs;
 
@@ -105,6 +107,12 @@ fn one_that_grows_is_read_as_it_was_when_it_was_opened() {
     fs::write(&path, &whole).unwrap();
     check_books(&recording);
     assert!(!recording.is_complete());
+    // Not that it was stopped, which nobody knows.
+    let warning = &recording.warnings()[0];
+    assert!(
+        warning.contains("perhaps its program still runs"),
+        "{warning}"
+    );
 }
 
 #[test]
@@ -144,7 +152,7 @@ fn what_is_no_recording_is_refused() {
 #[test]
 fn the_first_bytes_ever_written_are_still_read() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden.crepitus");
-    let sent = sent(10);
+    let sent = sent_of(10, plain);
     if std::env::var_os("CREPITUS_BLESS").is_some() {
         let _ = fs::remove_file(&path);
         recorded(&path, "golden", &sent);
