@@ -4,8 +4,13 @@
 
 mod support;
 
+use crepitus_usb::pty::Pty;
 use serde_json::Value;
 use std::fs;
+use std::io::Read;
+use std::os::fd::AsFd;
+use std::os::unix::fs::symlink;
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
@@ -109,6 +114,17 @@ fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
         info["faults"][0].as_str().unwrap().contains("lease"),
         "{info:#}"
     );
+    // The doctor finds it, too.
+    let output = served.run(&["doctor", "--json"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let report: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(report["fine"], false, "{report:#}");
+    let checks = report["checks"].as_array().unwrap();
+    let faults = checks.iter().find(|check| check["what"] == "faults");
+    let faults = faults.expect("a check of faults");
+    assert_eq!(faults["fine"], false, "{report:#}");
+    let found = faults["found"].as_str().unwrap();
+    assert!(found.contains("lease"), "{found}");
     // It continues without a restart.
     assert!(served.run(&["clear-fault"]).status.success());
     assert!(
@@ -239,7 +255,7 @@ fn a_name_in_use_is_refused_and_one_that_was_left_is_taken() {
     fs::remove_file(&link).unwrap();
     let other = home.path().join("other");
     fs::write(&other, "").unwrap();
-    std::os::unix::fs::symlink(&other, &link).unwrap();
+    symlink(&other, &link).unwrap();
     for device in ["knee", link.to_str().unwrap()] {
         let output = ask(device);
         assert_eq!(output.status.code(), Some(2), "{device}");
@@ -247,7 +263,54 @@ fn a_name_in_use_is_refused_and_one_that_was_left_is_taken() {
     }
     assert_eq!(fs::read(&other).unwrap(), b"");
     fs::remove_file(&link).unwrap();
-    std::os::unix::fs::symlink("/dev/pts/999999", &link).unwrap();
+    symlink("/dev/pts/999999", &link).unwrap();
     let served = Served::at(home);
     assert_eq!(served.info()["status"]["state"], "disarmed");
+}
+
+/// Somebody has replaced the link of a device that is served: what it leads to gets no byte.
+#[test]
+fn a_link_that_leads_elsewhere_is_no_device() {
+    let served = Served::new();
+    let (home, link) = (served.home.path(), served.port());
+    let pty = fs::read_link(&link).unwrap();
+    let other = Pty::new(None).unwrap();
+    let mut heard = fs::File::from(other.as_fd().try_clone_to_owned().unwrap());
+    let file = home.join("file");
+    fs::write(&file, "").unwrap();
+    for target in [other.path(), file.as_path(), home, Path::new("/dev/null")] {
+        fs::remove_file(&link).unwrap();
+        symlink(target, &link).unwrap();
+        let devices = stdout(&served.run(&["devices", "--json"]));
+        assert!(!devices.contains("\"knee\""), "{devices}");
+        assert_eq!(served.run(&["info"]).status.code(), Some(2));
+        for device in ["knee", link.to_str().unwrap()] {
+            let output = served.run(&["info", "--device", device]);
+            assert_eq!(output.status.code(), Some(2));
+            for path in [target, pty.as_path()] {
+                let said = format!("{}", path.display());
+                assert!(stderr(&output).contains(&said), "{}", stderr(&output));
+            }
+        }
+    }
+    // Its other end is closed by now, or says nothing.
+    assert_eq!(heard.read(&mut [0; 200]).unwrap_or(0), 0);
+    // The name is in use all the same, and the device is where the error says.
+    let again = served.run(&["serve-sim", "--name", "knee"]);
+    assert!(stderr(&again).contains("another program serves"));
+    let info = served.run(&["info", "--device", pty.to_str().unwrap()]);
+    assert!(info.status.success(), "{}", stderr(&info));
+}
+
+#[test]
+fn a_file_instead_of_the_folder_is_named() {
+    let home = tempfile::tempdir().unwrap();
+    fs::write(home.path().join("crepitus"), "").unwrap();
+    let output = crepitus()
+        .arg("serve-sim")
+        .env("XDG_RUNTIME_DIR", home.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("it is no folder"));
 }

@@ -10,7 +10,7 @@ use crepitus_recording::Recording;
 use crepitus_scene::{Overrides, Scene};
 use crepitus_usb::pty::Pty;
 use std::fs;
-use std::io::{BufRead, BufReader, Lines};
+use std::io::{BufRead, BufReader, Lines, Write};
 use std::os::unix::fs::{MetadataExt, chown};
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
 use support::served::{Served, ended, ending_signals, signal, until};
-use support::{HALF_A_SECOND, recording, stderr, stdout};
+use support::{HALF_A_SECOND, names, recording, stderr, stdout};
 
 /// Starts a program whose outputs are kept.
 fn start(served: &Served, arguments: &[&str]) -> Child {
@@ -375,6 +375,76 @@ fn a_program_that_serves_and_hangs_is_named() {
     assert!(info["faults"][0].as_str().unwrap().contains("lease"));
 }
 
+/// As when the system removes the runtime folder of a user who logs out.
+#[test]
+fn a_program_whose_socket_was_removed_is_found_again_and_ends_in_order() {
+    let served = Served::new();
+    let runtime = file(&served, "runtime");
+    let temporary = file(&served, "temporary");
+    fs::create_dir(&temporary).unwrap();
+    let port = fs::canonicalize(served.port()).unwrap();
+    let command = |arguments: &[&str]| {
+        let mut command = served.command(arguments);
+        command
+            .arg("--device")
+            .arg(&port)
+            .env("XDG_RUNTIME_DIR", &runtime)
+            .env("TMPDIR", &temporary)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
+        command
+    };
+    let socket = || {
+        let shared = runtime.join("crepitus/shared");
+        let mut names = names(&shared).into_iter();
+        let name = names.find(|name| name.ends_with(".socket"));
+        name.map(|name| shared.join(name))
+    };
+    let arm = || {
+        fs::create_dir_all(&runtime).unwrap();
+        let child = command(&["arm", "--zero", "--for", "60s"]).spawn().unwrap();
+        until("armed", || {
+            let info = command(&["info", "--json"]).output().unwrap();
+            stdout(&info).contains("\"armed\"")
+        });
+        // One of those may have served until now.
+        until("it serves", || socket().is_some());
+        (child, socket().unwrap())
+    };
+    for lost in ["socket", "folder", "runtime folder"] {
+        let (child, socket) = arm();
+        let path = match lost {
+            "socket" => socket,
+            "folder" => runtime.join("crepitus"),
+            _ => runtime.clone(),
+        };
+        // At once, unlike removing a folder.
+        fs::rename(path, file(&served, &format!("lost {lost}"))).unwrap();
+        let mut said = String::new();
+        until("stopped", || {
+            let output = command(&["stop"]).output().unwrap();
+            said = stdout(&output);
+            output.status.success()
+        });
+        assert!(said.contains("had armed it"), "{lost}: {said}");
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{lost}");
+    }
+    // Nor is a socket needed to end: none can be made where a folder is that is not empty.
+    let (mut child, socket) = arm();
+    let full = file(&served, "full");
+    fs::create_dir_all(full.join("inside")).unwrap();
+    while fs::rename(&full, &socket).is_err() {
+        let _ = fs::remove_file(&socket);
+    }
+    signal(&child, "-TERM");
+    assert!(ended(&mut child).success());
+    let info = served.info();
+    assert_eq!(info["status"]["state"], "disarmed");
+    assert_eq!(info["counters"]["drive"]["faults"], 0);
+    assert!(socket.join("inside").is_dir());
+}
+
 #[test]
 fn signals_end_a_command_in_order() {
     for name in ending_signals() {
@@ -594,6 +664,7 @@ impl Bench {
             let scene = Scene::parse(Path::new("knee.toml"), scene, &Overrides::default()).unwrap();
             let mut device = VirtualDevice::of(&scene, &Start::default()).unwrap();
             let mut pty = Pty::new(Some(&link)).unwrap();
+            writeln!(&lock, "{}", fs::read_link(&link).unwrap().display()).unwrap();
             ready.send(()).unwrap();
             let observed = observe(&mut device, &mut pty, &over, &of_device);
             drop(lock);

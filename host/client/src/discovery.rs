@@ -5,14 +5,15 @@
 //!
 //! A simulated device is a pty with a symbolic link in [`simulated_folder`]; the
 //! link's name is the device's. A link that no program serves is ignored, and
-//! never opened: see [`ServedName`].
+//! never opened, as is one that does not lead to that program's pty: see [`ServedName`].
 
 mod folder;
 mod name;
 
 use crepitus_protocol::usb::{PRODUCT, PRODUCT_ID, VENDOR_ID};
 pub use folder::{make_temporary_user_folder, make_user_folder, user_folder, user_folders};
-pub use name::ServedName;
+use name::Standing;
+pub use name::{Elsewhere, ServedName};
 use serialport::{SerialPortType, UsbPortInfo};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -56,7 +57,8 @@ pub struct DiscoveryError {
 /// [`DiscoveryError`] if the system cannot list its ports.
 pub fn devices() -> Result<Vec<Device>, DiscoveryError> {
     let mut devices = usb_devices()?;
-    devices.extend(simulated_devices(&simulated_folder()));
+    let is_served = |standing: &Standing| *standing == Standing::Served;
+    devices.extend(links_in(&simulated_folder(), is_served));
     Ok(devices)
 }
 
@@ -101,15 +103,21 @@ pub fn simulated_folder() -> PathBuf {
     user_folder()
 }
 
-/// The simulated devices of a folder, by name; none if it does not exist.
+/// The simulated devices of a folder, by name; none if it does not exist. Unlike [`devices`], also
+/// those whose link [`leads_elsewhere`]: whoever names one is to be told.
 pub fn simulated_devices(folder: &Path) -> Vec<Device> {
+    links_in(folder, |standing| *standing != Standing::Ended)
+}
+
+/// The links of a folder behind which there is what is wanted, in the order of their names.
+fn links_in(folder: &Path, is_wanted: impl Fn(&Standing) -> bool) -> Vec<Device> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();
     };
     let mut devices: Vec<_> = entries
         .flatten()
         .filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_symlink()))
-        .filter(|entry| name::is_served(&entry.path()))
+        .filter(|entry| is_wanted(&name::standing(&entry.path())))
         .filter_map(|entry| {
             Some(Device {
                 port: entry.path().to_str()?.to_owned(),
@@ -132,26 +140,44 @@ pub fn is_stale(port: &Path) -> bool {
     is_stale_in(&simulated_folder(), port)
 }
 
+/// Where this port leads, if it is, or links to, the link of a simulated device that is served, and
+/// that link does not lead to it. What is behind it may be anybody's terminal.
+pub fn leads_elsewhere(port: &Path) -> Option<Elsewhere> {
+    match unserved_in(&simulated_folder(), port) {
+        Some(Standing::Elsewhere(elsewhere)) => Some(elsewhere),
+        _ => None,
+    }
+}
+
 fn is_stale_in(folder: &Path, port: &Path) -> bool {
+    unserved_in(folder, port) == Some(Standing::Ended)
+}
+
+/// What is behind the first link on the way from this port that is one of a simulated device, and
+/// not served.
+fn unserved_in(folder: &Path, port: &Path) -> Option<Standing> {
     /// Links that lead to links; the system follows 40.
     const MOST_LINKS: usize = 40;
     let folder = fs::canonicalize(folder).ok();
     let mut path = port.to_path_buf();
     for _ in 0..MOST_LINKS {
         let Ok(target) = fs::read_link(&path) else {
-            return false;
+            return None;
         };
         let parent = match path.parent() {
             Some(parent) if parent != Path::new("") => parent.to_path_buf(),
             _ => PathBuf::from("."),
         };
         let is_there = folder.is_some() && fs::canonicalize(&parent).ok() == folder;
-        if (is_there || name::has_lock(&path)) && !name::is_served(&path) {
-            return true;
+        if is_there || name::has_lock(&path) {
+            let standing = name::standing(&path);
+            if standing != Standing::Served {
+                return Some(standing);
+            }
         }
         path = parent.join(target);
     }
-    false
+    None
 }
 
 #[cfg(test)]
@@ -177,6 +203,12 @@ mod tests {
     #[test]
     fn listing_ports_does_not_panic() {
         usb_devices().unwrap();
+    }
+
+    /// What the program says that serves a device at this pty.
+    #[cfg(unix)]
+    fn lock_text(pty: &Path) -> String {
+        format!("{}\n", pty.display())
     }
 
     #[cfg(unix)]
@@ -206,8 +238,15 @@ mod tests {
             assert!(is_stale(&path(name)), "{name}");
         }
         lock.lock().unwrap();
+        fs::write(path("inside/knee.lock"), lock_text(&path("terminal"))).unwrap();
         assert!(names.iter().all(|name| !is_stale(&path(name))));
         assert!(!is_stale(&path("terminal")));
+        let elsewhere = |name: &str| leads_elsewhere(&path(name));
+        assert!(names.iter().all(|name| elsewhere(name).is_none()));
+        // Replaced while it is served.
+        fs::write(path("inside/knee.lock"), lock_text(&path("pty"))).unwrap();
+        assert!(names.iter().all(|name| !is_stale(&path(name))));
+        assert!(names.iter().all(|name| elsewhere(name).is_some()));
         // A link to itself leads nowhere.
         symlink(path("round"), path("round")).unwrap();
         assert!(!is_stale(&path("round")));
@@ -219,29 +258,37 @@ mod tests {
         use std::os::unix::fs::symlink;
         let folder = tempfile::tempdir().unwrap();
         assert_eq!(simulated_devices(&folder.path().join("none")), []);
-        let target = folder.path().join("file");
-        fs::write(&target, "").unwrap();
+        let [target, gone, other] = ["file", "gone", "other"].map(|name| folder.path().join(name));
+        for file in [&target, &other] {
+            fs::write(file, "").unwrap();
+        }
         let mut locks = Vec::new();
-        for (name, target, is_locked) in [
-            ("knee", &target, true),
-            ("hip", &target, true),
-            ("killed", &target, false),
-            ("gone", &folder.path().join("gone"), true),
+        for (name, target, said, is_locked) in [
+            ("knee", &target, lock_text(&target), true),
+            ("hip", &target, lock_text(&target), true),
+            ("killed", &target, lock_text(&target), false),
+            ("no-pty", &gone, lock_text(&gone), true),
+            ("replaced", &other, lock_text(&target), true),
+            ("silent", &target, String::new(), true),
         ] {
             let link = folder.path().join(name);
             symlink(target, &link).unwrap();
-            let lock = fs::File::create(folder.path().join(format!("{name}.lock"))).unwrap();
+            let lock = folder.path().join(format!("{name}.lock"));
+            fs::write(&lock, said).unwrap();
+            let lock = fs::File::open(lock).unwrap();
             if is_locked {
                 lock.lock().unwrap();
                 locks.push(lock);
             }
         }
         symlink(&target, folder.path().join("never-served")).unwrap();
-        let names: Vec<_> = simulated_devices(folder.path())
-            .into_iter()
-            .map(|device| device.kind)
-            .collect();
+        let names = |devices: Vec<Device>| -> Vec<_> {
+            devices.into_iter().map(|device| device.kind).collect()
+        };
         let simulated = |name: &str| DeviceKind::Simulated { name: name.into() };
-        assert_eq!(names, [simulated("hip"), simulated("knee")]);
+        let served = links_in(folder.path(), |standing| *standing == Standing::Served);
+        assert_eq!(names(served), [simulated("hip"), simulated("knee")]);
+        let named = simulated_devices(folder.path());
+        assert_eq!(names(named), ["hip", "knee", "replaced"].map(simulated));
     }
 }

@@ -10,10 +10,11 @@
 //! the lock falls to one of them.
 
 use crate::frames::Frames;
+use crate::held::Held;
 use crate::left_open::requests_in;
 use crate::member::{Chunk, Member};
 use crate::note::Note;
-use crate::socket::{Arrival, Listener, Stream};
+use crate::socket::{Arrival, Stream};
 use crepitus_client::{Transport, TransportError};
 use crepitus_protocol::Decoder;
 use crepitus_protocol::frame::Frame;
@@ -28,6 +29,10 @@ use std::time::{Duration, Instant};
 
 /// How often a thread that waits for bytes looks whether the hub has ended.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
+
+/// The first pause of waiting for a program that connects, as this one does when the hub has begun;
+/// each is twice as long as the one before, up to [`LOOK_EVERY`].
+const SOON: Duration = Duration::from_millis(1);
 
 /// The longest pause of the thread that receives. After a longer one this program was stopped,
 /// and what has waited for it meanwhile is too old to be sent: those who have sent it know
@@ -65,8 +70,7 @@ impl Hub {
             impl Transport + Send + 'static,
             impl Transport + Send + 'static,
         ),
-        listener: Listener,
-        lock: File,
+        held: Held,
     ) -> Self {
         let (to_port, queue) = sync_channel(QUEUE);
         let state = Arc::new(State {
@@ -78,17 +82,15 @@ impl Hub {
         });
         let (receiver, sender) = ports;
         let [for_accept, for_send, for_receive] = [(); 3].map(|()| state.clone());
-        let wake = listener.waker();
-        let acceptor = thread::spawn(move || for_accept.accept(&listener));
+        let acceptor = thread::spawn(move || for_accept.accept(held));
         let sending = thread::spawn(move || for_send.send_all(sender, &queue));
         let thread = thread::spawn(move || {
             for_receive.receive_all(receiver);
             for_receive.end();
-            wake();
             // A thread that has panicked has ended, too.
             let _ = sending.join();
-            let _ = acceptor.join();
-            drop(lock);
+            // It returns the lock, which ends last.
+            drop(acceptor.join());
         });
         Self {
             state,
@@ -178,22 +180,24 @@ impl State {
         }
     }
 
-    fn accept(self: &Arc<Self>, listener: &Listener) {
-        for number in 0.. {
-            let arrived = listener.accept();
-            if self.is_over() {
-                return;
-            }
-            match arrived {
-                Ok(arrival) => {
-                    let state = self.clone();
-                    // As many threads as the system gives: this program is not served, the others are.
-                    let _ = Builder::new().spawn(move || state.serve(number, arrival));
-                }
-                // Too many open files: some will be closed.
-                Err(_) => thread::sleep(LOOK_EVERY),
+    /// Takes programs in until the hub ends; returns the lock. It never waits for a program, as
+    /// none can connect to a socket that was removed.
+    fn accept(self: &Arc<Self>, mut held: Held) -> File {
+        let (mut number, mut pause) = (0, SOON);
+        while !self.is_over() {
+            held.restore();
+            if let Ok(arrival) = held.accept() {
+                let state = self.clone();
+                // As many threads as the system gives: this program is not served, the others are.
+                let _ = Builder::new().spawn(move || state.serve(number, arrival));
+                (number, pause) = (number + 1, SOON);
+            } else {
+                // Nobody; or too many open files, of which some will be closed.
+                thread::sleep(pause);
+                pause = LOOK_EVERY.min(2 * pause);
             }
         }
+        held.into_lock()
     }
 
     /// Serves a program until it closes its end.
@@ -358,9 +362,13 @@ mod tests {
     use super::*;
     use crate::link::Link;
     use crate::note::Program;
+    use crate::place::Place;
     use crate::socket::connect;
     use crepitus_protocol::host::{Operation, Request};
     use crepitus_protocol::{Lane, Nonce, Session, frame};
+    use std::fs;
+    use std::path::{Path, PathBuf};
+    use std::sync::mpsc::channel;
 
     /// A port that keeps the thread that receives for a while, as a signal would keep all.
     struct Pausing {
@@ -397,16 +405,74 @@ mod tests {
     /// A hub with a port of that pause, and what it sends there.
     fn served(pause_ms: u64) -> (tempfile::TempDir, Hub, Arc<Mutex<Vec<u8>>>) {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("socket");
-        let listener = Listener::at(&path).unwrap();
-        let lock = File::create(folder.path().join("lock")).unwrap();
+        let place = Place::in_folder(folder.path(), "knee");
+        let held = Held::at(&place, place.lock().unwrap().unwrap()).unwrap();
         let sent = Arc::new(Mutex::new(Vec::new()));
         let port = || Pausing {
             pause: Duration::from_millis(pause_ms),
             sent: sent.clone(),
         };
-        let hub = Hub::start((port(), port()), listener, lock);
+        let hub = Hub::start((port(), port()), held);
         (folder, hub, sent)
+    }
+
+    fn socket_in(folder: &tempfile::TempDir) -> PathBuf {
+        Place::in_folder(folder.path(), "knee").socket
+    }
+
+    /// Whether a program that connects is greeted.
+    fn is_welcome(socket: &Path) -> bool {
+        let Ok(mut link) = connect(socket).map(Link::new) else {
+            return false;
+        };
+        let hello = Note::Hello(Program::this("other")).frame().unwrap();
+        if link.send(&hello).is_err() {
+            return false;
+        }
+        while link.fill(Duration::from_secs(1)).unwrap_or(false) {
+            if link.note() == Some(Note::Welcome) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// As when the system removes the folder of a user who logs out.
+    #[test]
+    fn a_hub_whose_socket_was_removed_or_replaced_is_found_again_and_ends() {
+        let (folder, hub, _) = served(1);
+        let socket = socket_in(&folder);
+        for by in ["nothing", "a file", "a folder"] {
+            assert!(is_welcome(&socket));
+            let replace = || match by {
+                "a file" => File::create_new(&socket).map(drop),
+                "a folder" => fs::create_dir(&socket),
+                _ => Ok(()),
+            };
+            fs::remove_file(&socket).unwrap();
+            // The hub may be quicker.
+            while replace().is_err() {
+                let _ = fs::remove_file(&socket);
+            }
+            let deadline = Instant::now() + Duration::from_secs(5);
+            while !is_welcome(&socket) {
+                assert!(Instant::now() < deadline, "replaced by {by}");
+                thread::sleep(Duration::from_millis(5));
+            }
+        }
+        // A folder that is not empty stays.
+        let full = folder.path().join("full");
+        fs::create_dir_all(full.join("inside")).unwrap();
+        while fs::rename(&full, &socket).is_err() {
+            let _ = fs::remove_file(&socket);
+        }
+        let (ended, has_ended) = channel();
+        thread::spawn(move || {
+            drop(hub);
+            ended.send(()).unwrap();
+        });
+        has_ended.recv_timeout(Duration::from_secs(5)).unwrap();
+        assert!(socket.join("inside").is_dir());
     }
 
     /// What has waited for a program that was stopped is not sent when it goes on: a request to
@@ -416,7 +482,7 @@ mod tests {
         const FRAME: &[u8] = b"\x03ab\0";
         for (pause_ms, is_sent) in [(10, true), (900, false)] {
             let (folder, hub, sent) = served(pause_ms);
-            let mut stream = &connect(&folder.path().join("socket")).unwrap();
+            let mut stream = &connect(&socket_in(&folder)).unwrap();
             thread::sleep(Duration::from_millis(600));
             stream.write_all(FRAME).unwrap();
             thread::sleep(Duration::from_millis(600));
@@ -438,8 +504,7 @@ mod tests {
         };
         let (folder, hub, sent_before) = served(1);
         let join = |program: Program| {
-            let socket = folder.path().join("socket");
-            let mut link = Link::new(connect(&socket).unwrap());
+            let mut link = Link::new(connect(&socket_in(&folder)).unwrap());
             link.send(&Note::Hello(program).frame().unwrap()).unwrap();
             while link.note() != Some(Note::Welcome) {
                 link.fill(Duration::from_secs(5)).unwrap();
@@ -469,7 +534,7 @@ mod tests {
         assert_eq!(requests_in(&sent_before.lock().unwrap()).len(), 2);
         drop(hub);
         let (folder, _hub, sent) = served(1);
-        let mut stream = &connect(&folder.path().join("socket")).unwrap();
+        let mut stream = &connect(&socket_in(&folder)).unwrap();
         stream.write_all(&heir).unwrap();
         while sent.lock().unwrap().len() < 20 && Instant::now() < deadline {
             thread::sleep(Duration::from_millis(5));

@@ -140,6 +140,10 @@ mod tests {
         // Killed before its first renewal, it may be armed all the same.
         assert_eq!(said(&open.last_will()), will);
         assert!(!open.renews());
+        // More than a lease ago: from now on only a renewal tells that it may be armed.
+        open.asked = Instant::now().checked_sub(Duration::from_secs(1));
+        let only_unsubscribe = [request(0x1_0000, Operation::Unsubscribe)];
+        assert_eq!(said(&open.last_will()), only_unsubscribe);
         open.requests(&request(0x1_0005, Operation::Renew));
         assert!(open.renews());
         assert_eq!(said(&open.last_will()), will);

@@ -34,6 +34,7 @@
 //! | what the hub knows of each program | `member.rs` |
 //! | what should end with a program | `left_open.rs` |
 //! | names of socket and lock | `place.rs` |
+//! | making them again when they were removed | `held.rs` |
 //! | sockets of each system | `socket.rs` |
 //! | messages between programs, which the device never sees | `note.rs` |
 #![forbid(unsafe_code)]
@@ -41,6 +42,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod frames;
+mod held;
 mod hub;
 mod left_open;
 mod link;

@@ -136,7 +136,7 @@ fn note_of(frame: &[u8]) -> Option<Note> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::socket::{Listener, connect};
+    use crate::socket::{Listener, arrival, connect};
     use std::thread;
     use std::time::Instant;
 
@@ -146,7 +146,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("socket");
         let listener = Listener::at(&path).unwrap();
-        let stopped = thread::spawn(move || listener.accept().unwrap().enter().unwrap());
+        let stopped = thread::spawn(move || arrival(|| listener.accept()).enter().unwrap());
         let mut link = Link::new(connect(&path).unwrap());
         let stopped = stopped.join().unwrap();
         let begun = Instant::now();
@@ -173,7 +173,7 @@ mod tests {
         ] {
             // On a loopback, each waits for the other's proof.
             let served = thread::scope(|scope| {
-                let served = scope.spawn(|| listener.accept().unwrap().enter().unwrap());
+                let served = scope.spawn(|| arrival(|| listener.accept()).enter().unwrap());
                 let link = Link::new(connect(&path).unwrap());
                 (served.join().unwrap(), link)
             });

@@ -16,6 +16,8 @@ const LONGEST: usize = 95;
 /// Socket and lock of a device.
 #[derive(Clone, Debug)]
 pub(crate) struct Place {
+    /// Of the device.
+    name: String,
     /// The socket on which the hub listens.
     pub(crate) socket: PathBuf,
     /// Whoever has locked this file is the hub, or is about to be. The system
@@ -26,13 +28,23 @@ pub(crate) struct Place {
 impl Place {
     /// The place of the device at this port.
     pub(crate) fn of(port: &str) -> io::Result<Self> {
-        let name = name_of(port);
-        let mut folder = discovery::make_user_folder()?.join(FOLDER);
+        Self::in_user_folder(&name_of(port))
+    }
+
+    /// The place of the same device in the user's folder as it is now, which may be another one.
+    pub(crate) fn again(&self) -> io::Result<Self> {
+        Self::in_user_folder(&self.name)
+    }
+
+    fn in_user_folder(name: &str) -> io::Result<Self> {
+        let mut folder = discovery::make_user_folder()
+            .map_err(|error| of_user_folder(&error))?
+            .join(FOLDER);
         if folder.as_os_str().len() + name.len() > LONGEST {
             folder = discovery::make_temporary_user_folder()?.join(FOLDER);
         }
         fs::create_dir_all(&folder)?;
-        Ok(Self::in_folder(&folder, &name))
+        Ok(Self::in_folder(&folder, name))
     }
 
     /// Where programs that were started with another environment meet: from a cron job, or as
@@ -46,11 +58,12 @@ impl Place {
             .collect()
     }
 
-    fn in_folder(folder: &Path, name: &str) -> Self {
-        let name = shortened(name, LONGEST.saturating_sub(folder.as_os_str().len()));
+    pub(crate) fn in_folder(folder: &Path, name: &str) -> Self {
+        let short = shortened(name, LONGEST.saturating_sub(folder.as_os_str().len()));
         Self {
-            socket: folder.join(format!("{name}.socket")),
-            lock: folder.join(format!("{name}.lock")),
+            name: name.to_owned(),
+            socket: folder.join(format!("{short}.socket")),
+            lock: folder.join(format!("{short}.lock")),
         }
     }
 
@@ -67,6 +80,27 @@ impl Place {
             Err(TryLockError::Error(error)) => Err(error),
         }
     }
+
+    /// Whether this lock is the one that other programs find.
+    #[cfg(unix)]
+    pub(crate) fn has(&self, lock: &File) -> bool {
+        use std::os::unix::fs::MetadataExt;
+        let identity = |file: io::Result<fs::Metadata>| file.ok().map(|m| (m.dev(), m.ino()));
+        let own = identity(lock.metadata());
+        own.is_some() && own == identity(fs::metadata(&self.lock))
+    }
+
+    /// The same, where files have no numbers: whether there is one.
+    #[cfg(not(unix))]
+    pub(crate) fn has(&self, _: &File) -> bool {
+        self.lock.exists()
+    }
+}
+
+/// Which folder it is about.
+fn of_user_folder(error: &io::Error) -> io::Error {
+    let folder = discovery::user_folder();
+    io::Error::new(error.kind(), format!("{}: {error}", folder.display()))
 }
 
 /// The device's serial number, and the path of its port.
@@ -145,6 +179,20 @@ mod tests {
         assert_eq!(shortened("knee", 4), "knee");
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn a_lock_that_was_removed_or_replaced_is_noticed() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = Place::in_folder(folder.path(), "knee");
+        let lock = place.lock().unwrap().unwrap();
+        assert!(place.has(&lock));
+        assert!(place.lock().unwrap().is_none());
+        fs::remove_file(&place.lock).unwrap();
+        assert!(!place.has(&lock));
+        let next = place.lock().unwrap().unwrap();
+        assert!(place.has(&next) && !place.has(&lock));
+    }
+
     #[test]
     fn names_are_plain_and_the_same_by_any_path() {
         assert_eq!(file_name(Path::new("/dev/pts/7")), "dev-pts-7");
@@ -152,8 +200,16 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let port = folder.path().join("port");
         fs::write(&port, "").unwrap();
-        let [direct, around] = [port.clone(), folder.path().join("./../").join(&port)]
-            .map(|path| name_of(path.to_str().unwrap()));
-        assert_eq!(direct, around);
+        let name = |path: &Path| name_of(path.to_str().unwrap());
+        let own_name = folder.path().file_name().unwrap();
+        let around = folder.path().join("..").join(own_name).join("port");
+        assert_eq!(name(&around), name(&port));
+        // As the links to a serial port by its number.
+        #[cfg(unix)]
+        {
+            let link = folder.path().join("link");
+            std::os::unix::fs::symlink(&port, &link).unwrap();
+            assert_eq!(name(&link), name(&port));
+        }
     }
 }

@@ -1,12 +1,13 @@
 //! The transport of a program that shares a device.
 
 use crate::frames::Frames;
+use crate::held::Held;
 use crate::hub::Hub;
 use crate::left_open::{LeftOpen, requests_in};
 use crate::link::Link;
 use crate::note::{Note, Program};
 use crate::place::Place;
-use crate::socket::{Listener, connect};
+use crate::socket::connect;
 use crepitus_client::{Serial, Transport, TransportError, discovery};
 use std::io::{self, ErrorKind};
 use std::path::Path;
@@ -110,6 +111,12 @@ impl Shared {
                 port: self.port.clone(),
             });
         }
+        if let Some(elsewhere) = discovery::leads_elsewhere(Path::new(&self.port)) {
+            return Err(TransportError::Open {
+                port: self.port.clone(),
+                detail: elsewhere.to_string(),
+            });
+        }
         let place = Place::of(&self.port).map_err(|error| self.cannot_meet(&error))?;
         for other in Place::others(&self.port) {
             if other.socket != place.socket && self.join(&other)? {
@@ -122,9 +129,8 @@ impl Shared {
             match place.lock() {
                 Ok(Some(lock)) => {
                     let ports = Serial::open(&self.port)?.split()?;
-                    let listener =
-                        Listener::at(&place.socket).map_err(|error| self.cannot_meet(&error))?;
-                    self.hub = Some(Hub::start(ports, listener, lock));
+                    let held = Held::at(&place, lock).map_err(|error| self.cannot_meet(&error))?;
+                    self.hub = Some(Hub::start(ports, held));
                 }
                 Ok(None) if self.join(&place)? => return Ok(()),
                 // Another program is opening the port, or closing it.

@@ -13,3 +13,16 @@ mod unix;
 pub(crate) use loopback::{Arrival, Listener, Stream, connect};
 #[cfg(unix)]
 pub(crate) use unix::{Arrival, Listener, Stream, connect};
+
+/// Waits for a program that connects.
+#[cfg(test)]
+pub(crate) fn arrival<T>(accept: impl Fn() -> std::io::Result<T>) -> T {
+    loop {
+        match accept() {
+            Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => {
+                std::thread::sleep(std::time::Duration::from_millis(1));
+            }
+            arrived => return arrived.unwrap(),
+        }
+    }
+}

@@ -68,7 +68,7 @@ fn is_own(folder: &Path) -> bool {
 ///
 /// # Errors
 /// Of the system; [`io::ErrorKind::PermissionDenied`] if there is something of
-/// that name which other users can write to.
+/// that name which other users can write to; [`io::ErrorKind::NotADirectory`] if it is no folder.
 pub fn make_user_folder() -> io::Result<PathBuf> {
     let folder = user_folder();
     make_private(&folder)?;
@@ -96,11 +96,16 @@ fn make_private(folder: &Path) -> io::Result<()> {
     }
     // Not what a link leads to: others can make links in the temporary folder.
     let found = fs::symlink_metadata(folder)?;
-    let is_own = found.is_dir() && found.uid() == rustix::process::geteuid().as_raw();
-    if !is_own {
+    if found.uid() != rustix::process::geteuid().as_raw() {
         return Err(io::Error::new(
             io::ErrorKind::PermissionDenied,
             "it belongs to another user; remove it, or set XDG_RUNTIME_DIR to a folder of your own",
+        ));
+    }
+    if !found.is_dir() {
+        return Err(io::Error::new(
+            io::ErrorKind::NotADirectory,
+            "it is no folder; remove it, or set XDG_RUNTIME_DIR to another folder of your own",
         ));
     }
     if found.mode() & 0o077 != 0 {
@@ -131,8 +136,13 @@ mod tests {
         assert_eq!(mode(), 0o700);
         let link = home.path().join("link");
         symlink(&folder, &link).unwrap();
-        let error = make_private(&link).unwrap_err();
-        assert_eq!(error.kind(), io::ErrorKind::PermissionDenied);
+        let file = home.path().join("file");
+        fs::write(&file, "").unwrap();
+        for other in [link, file] {
+            let error = make_private(&other).unwrap_err();
+            assert_eq!(error.kind(), io::ErrorKind::NotADirectory);
+            assert!(error.to_string().contains("no folder"), "{error}");
+        }
         let nowhere = home.path().join("no/such/folder");
         assert!(make_private(&nowhere).is_err());
     }

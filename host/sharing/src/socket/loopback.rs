@@ -99,6 +99,9 @@ impl Listener {
     /// Of the system: the folder is gone, no port is left.
     pub(crate) fn at(path: &Path) -> io::Result<Self> {
         let socket = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
+        socket.set_nonblocking(true)?;
+        // An empty folder: no file replaces it.
+        let _ = fs::remove_dir(path);
         let meeting = Meeting::draw(socket.local_addr()?.port())?;
         meeting.write(path)?;
         Ok(Self {
@@ -108,18 +111,19 @@ impl Listener {
         })
     }
 
-    /// Ends the wait of [`Self::accept`], whatever has become of the file.
-    pub(crate) fn waker(&self) -> impl FnOnce() + Send + 'static {
-        let port = self.meeting.port;
-        move || drop(TcpStream::connect((Ipv4Addr::LOCALHOST, port)))
+    /// Whether the file still leads here.
+    pub(crate) fn is_found(&self) -> bool {
+        Meeting::read(&self.path).is_ok_and(|found| found == self.meeting)
     }
 
-    /// Waits for a program that connects.
+    /// A program that has connected. It does not wait for one.
     ///
     /// # Errors
-    /// Of the system, as too many open files.
+    /// [`ErrorKind::WouldBlock`] if there is none; those of the system, as too many open files.
     pub(crate) fn accept(&self) -> io::Result<Arrival> {
         let (stream, _) = self.socket.accept()?;
+        // On Windows it is as the listener is.
+        stream.set_nonblocking(false)?;
         Ok(Arrival {
             stream,
             meeting: self.meeting.clone(),
@@ -129,7 +133,10 @@ impl Listener {
 
 impl Drop for Listener {
     fn drop(&mut self) {
-        let _ = fs::remove_file(&self.path);
+        // What another has put there is not this one's to remove.
+        if self.is_found() {
+            let _ = fs::remove_file(&self.path);
+        }
     }
 }
 
@@ -189,6 +196,7 @@ fn expect(stream: &mut TcpStream, proof: &str) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::socket::arrival;
     use std::thread;
 
     fn listening() -> (tempfile::TempDir, PathBuf, Listener) {
@@ -202,7 +210,7 @@ mod tests {
     fn whoever_has_read_the_file_gets_in() {
         let (_folder, path, listener) = listening();
         let inside = thread::spawn(move || {
-            let mut stream = listener.accept().unwrap().enter().unwrap();
+            let mut stream = arrival(|| listener.accept()).enter().unwrap();
             stream.write_all(b"welcome").unwrap();
             listener
         });
@@ -222,7 +230,7 @@ mod tests {
         for said in [&[b'0'; PROOF_BYTES][..], b"", &[b'0'; PROOF_BYTES - 1]] {
             let mut stranger = TcpStream::connect((Ipv4Addr::LOCALHOST, port)).unwrap();
             stranger.write_all(said).unwrap();
-            assert!(listener.accept().unwrap().enter().is_err(), "{said:?}");
+            assert!(arrival(|| listener.accept()).enter().is_err(), "{said:?}");
             let mut heard = Vec::new();
             // A reset is as good as an end: it hears nothing.
             let _ = stranger.read_to_end(&mut heard);
@@ -231,13 +239,19 @@ mod tests {
     }
 
     #[test]
-    fn a_wait_ends_even_if_the_file_is_gone() {
+    fn a_file_that_leads_elsewhere_is_noticed_and_left() {
         let (_folder, path, listener) = listening();
-        let wake = listener.waker();
-        fs::remove_file(path).unwrap();
-        let waiting = thread::spawn(move || listener.accept());
-        wake();
-        assert!(waiting.join().unwrap().unwrap().enter().is_err());
+        assert!(listener.is_found());
+        let nobody = listener.accept().unwrap_err();
+        assert_eq!(nobody.kind(), ErrorKind::WouldBlock);
+        fs::remove_file(&path).unwrap();
+        assert!(!listener.is_found());
+        fs::create_dir(&path).unwrap();
+        assert!(!listener.is_found());
+        let next = Listener::at(&path).unwrap();
+        assert!(next.is_found() && !listener.is_found());
+        drop(listener);
+        assert!(next.is_found());
     }
 
     /// The file of a killed program, whose port another one has got.
@@ -248,7 +262,7 @@ mod tests {
         other.answer = random().unwrap();
         assert_ne!(other.answer, listener.meeting.answer);
         other.write(&path).unwrap();
-        let inside = thread::spawn(move || listener.accept().unwrap().enter());
+        let inside = thread::spawn(move || arrival(|| listener.accept()).enter());
         assert_eq!(
             connect(&path).unwrap_err().kind(),
             ErrorKind::PermissionDenied

@@ -2,7 +2,7 @@
 
 use std::fs::{self, Permissions};
 use std::io;
-use std::os::unix::fs::PermissionsExt;
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
 
@@ -12,8 +12,10 @@ pub(crate) type Stream = UnixStream;
 /// Listens at a path, which it removes in the end.
 #[derive(Debug)]
 pub(crate) struct Listener {
-    listener: UnixListener,
+    socket: UnixListener,
     path: PathBuf,
+    /// Of the path. Nothing else has it as long as this listens.
+    identity: (u64, u64),
 }
 
 impl Listener {
@@ -23,35 +25,49 @@ impl Listener {
     /// # Errors
     /// Of the system: the folder is gone, or the path too long for a socket.
     pub(crate) fn at(path: &Path) -> io::Result<Self> {
-        let _ = fs::remove_file(path);
-        let listener = UnixListener::bind(path)?;
+        // Or an empty folder.
+        let _ = fs::remove_file(path).or_else(|_| fs::remove_dir(path));
+        let socket = UnixListener::bind(path)?;
         let listener = Self {
-            listener,
+            socket,
             path: path.to_owned(),
+            identity: identity_of(path)?,
         };
         // The folder is private already.
         fs::set_permissions(path, Permissions::from_mode(0o600))?;
+        listener.socket.set_nonblocking(true)?;
         Ok(listener)
     }
 
-    /// Ends the wait of [`Self::accept`].
-    pub(crate) fn waker(&self) -> impl FnOnce() + Send + 'static {
-        let path = self.path.clone();
-        move || drop(UnixStream::connect(path))
+    /// Whether the path still leads here.
+    pub(crate) fn is_found(&self) -> bool {
+        identity_of(&self.path).is_ok_and(|found| found == self.identity)
     }
 
-    /// Waits for a program that connects.
+    /// A program that has connected. It does not wait for one.
     ///
     /// # Errors
-    /// Of the system, as too many open files.
+    /// [`io::ErrorKind::WouldBlock`] if there is none; those of the system, as too many open files.
     pub(crate) fn accept(&self) -> io::Result<Arrival> {
-        self.listener.accept().map(|(stream, _)| Arrival(stream))
+        let (stream, _) = self.socket.accept()?;
+        // On macOS it is as the listener is.
+        stream.set_nonblocking(false)?;
+        Ok(Arrival(stream))
     }
+}
+
+/// Device and inode.
+fn identity_of(path: &Path) -> io::Result<(u64, u64)> {
+    let found = fs::symlink_metadata(path)?;
+    Ok((found.dev(), found.ino()))
 }
 
 impl Drop for Listener {
     fn drop(&mut self) {
-        let _ = fs::remove_file(&self.path);
+        // What another has put there is not this one's to remove.
+        if self.is_found() {
+            let _ = fs::remove_file(&self.path);
+        }
     }
 }
 
@@ -95,5 +111,23 @@ mod tests {
         drop(listener);
         assert!(!path.exists());
         assert!(connect(&path).is_err());
+    }
+
+    #[test]
+    fn a_path_that_leads_elsewhere_is_noticed_and_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("knee.socket");
+        let listener = Listener::at(&path).unwrap();
+        assert!(listener.is_found());
+        let nobody = listener.accept().unwrap_err();
+        assert_eq!(nobody.kind(), io::ErrorKind::WouldBlock);
+        fs::remove_file(&path).unwrap();
+        assert!(!listener.is_found());
+        fs::create_dir(&path).unwrap();
+        assert!(!listener.is_found());
+        let next = Listener::at(&path).unwrap();
+        assert!(next.is_found() && !listener.is_found());
+        drop(listener);
+        assert!(next.is_found());
     }
 }

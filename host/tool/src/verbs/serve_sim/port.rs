@@ -7,6 +7,7 @@ use crepitus_connection::{Clock, is_port};
 use crepitus_usb::cabled::CabledDevice;
 use crepitus_usb::pty::Pty;
 use serde_json::json;
+use std::fs;
 use std::io::ErrorKind;
 use std::thread::sleep;
 use std::time::Duration;
@@ -22,15 +23,16 @@ pub(super) fn check(name: &str) -> Result<(), Failure> {
     let is_plain = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
     if name.len() > MOST_NAME_BYTES {
         return Err(Failure::Input(format!(
-            "--name {name:?}: expected at most {MOST_NAME_BYTES} characters, got {}",
-            name.chars().count()
+            "--name {name:?}: expected at most {MOST_NAME_BYTES} bytes, got {}",
+            name.len()
         )));
     }
     let is_reserved = ["", "sim", "emulated", "shared"].contains(&name) || is_port(name);
-    if is_reserved || !name.chars().all(is_plain) {
+    // `--device` would take a hyphen at the beginning for an option's.
+    if is_reserved || name.starts_with('-') || !name.chars().all(is_plain) {
         return Err(Failure::Input(format!(
-            "--name {name:?}: expected letters, digits, `-` and `_`, and not `sim`, `emulated`, `shared` or a port of \
-             Windows such as `COM3`, which `--device` takes for something else"
+            "--name {name:?}: expected letters, digits, `_` and, not at the beginning, `-`; and not `sim`, `emulated`, \
+             `shared` or a port of Windows such as `COM3`, which `--device` takes for something else"
         )));
     }
     Ok(())
@@ -50,7 +52,11 @@ pub(super) fn serve(
         _ => Failure::at(&user_folder(), "the folder of simulated devices", &e),
     })?;
     let link = served.link();
-    let mut pty = Pty::new(Some(link)).map_err(|e| Failure::at(link, "cannot be created", &e))?;
+    let made = Pty::new(Some(link)).and_then(|pty| {
+        served.publish(&fs::read_link(link)?)?;
+        Ok(pty)
+    });
+    let mut pty = made.map_err(|e| Failure::at(link, "cannot be created", &e))?;
     interrupt::listen();
     if as_json {
         print_json(&json!({ "port": link, "name": name, "scene": title }))?;
@@ -80,4 +86,30 @@ pub(super) fn serve(
         sleep(Duration::from_millis(1));
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_is_one_that_device_takes() {
+        for name in ["knee", "left-2", "_", "a-", "\u{e9}"] {
+            assert!(check(name).is_ok(), "{name}");
+        }
+        assert!(check(&"\u{e9}".repeat(100)).is_ok());
+        let long = "\u{e9}".repeat(101);
+        for (name, part) in [
+            (long.as_str(), "at most 200 bytes, got 202"),
+            ("-x", "not at the beginning"),
+            ("-", "not at the beginning"),
+            ("", "expected letters"),
+            ("a/b", "expected letters"),
+            ("sim", "not `sim`"),
+            ("com3", "`COM3`"),
+        ] {
+            let text = check(name).unwrap_err().into_text();
+            assert!(text.contains(part), "{name}: {text}");
+        }
+    }
 }
