@@ -87,7 +87,7 @@ pub(crate) fn follow(
         return Ok(End::Requested);
     }
     if zero {
-        client.zero().map_err(failure)?;
+        client.zero().map_err(|error| failure_with(client, error))?;
     }
     if arm {
         client.arm().map_err(|error| failure_with(client, error))?;

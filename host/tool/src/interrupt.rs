@@ -69,6 +69,8 @@ pub(crate) fn requested() -> bool {
         .is_some_and(|requested| requested.load(Ordering::Relaxed))
 }
 
+/// Those that end a command in order. Interrupts count even where a program starts with them
+/// ignored, as one in the background of a script does: torque is to end with that script's Ctrl-C.
 #[cfg(unix)]
 fn signals() -> Vec<i32> {
     use signal_hook::consts::SIGHUP;

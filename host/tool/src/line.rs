@@ -41,6 +41,23 @@ pub(crate) fn connect(arguments: &DeviceArguments) -> Result<Client<Line>, Failu
     Client::connect(open(arguments)?).map_err(failure)
 }
 
+/// The devices that the arguments name: without a name, all that are attached, or none, whose
+/// opening says so.
+pub(crate) fn attached(arguments: &DeviceArguments) -> Result<Vec<DeviceArguments>, Failure> {
+    let ports = match &arguments.device {
+        Some(_) => Vec::new(),
+        None => Line::attached().map_err(Failure::input)?,
+    };
+    if ports.is_empty() {
+        return Ok(vec![arguments.clone()]);
+    }
+    let named = |port| DeviceArguments {
+        device: Some(port),
+        ..arguments.clone()
+    };
+    Ok(ports.into_iter().map(named).collect())
+}
+
 /// Opens the connection to a device of any version.
 pub(crate) fn manage(arguments: &DeviceArguments) -> Result<Management<Line>, Failure> {
     Ok(Management::new(open(arguments)?))

@@ -102,8 +102,26 @@ pub(crate) fn of_this_kind(name: &str) -> String {
     }
 }
 
+/// All that can be read, with their files, in the order of their names; warns of the others. Without
+/// them, those that ship are still of use.
+pub(crate) fn all() -> Vec<(Preset, PathBuf)> {
+    let files = files().unwrap_or_else(|failure| {
+        warn(failure.into_text());
+        Vec::new()
+    });
+    let read = files.into_iter().map(|file| (Preset::read(&file), file));
+    read.filter_map(|(preset, file)| match preset {
+        Ok(preset) => Some((preset, file)),
+        Err(error) => {
+            warn(error);
+            None
+        }
+    })
+    .collect()
+}
+
 /// The files of all, in the order of their names.
-pub(crate) fn files() -> Result<Vec<PathBuf>, Failure> {
+fn files() -> Result<Vec<PathBuf>, Failure> {
     // Without a home folder there are none.
     let Ok(folder) = folder() else {
         return Ok(Vec::new());

@@ -37,7 +37,7 @@ impl Recorded {
         let handshake = client.handshake();
         let metadata = Metadata::new(title, &handshake.comms, handshake.drive.as_ref());
         let mut recorded = Self {
-            recorder: Recorder::create(file, &metadata).map_err(Failure::input)?,
+            recorder: Recorder::create(file, &metadata).map_err(not_begun)?,
             id: metadata.id,
             announced: None,
             status: StatusLine::new(),
@@ -73,8 +73,20 @@ impl Recorded {
         }
         let file = self.recorder.path().to_owned();
         let totals = self.recorder.finish().map_err(stopped)?;
-        in_final_format(&file, &self.id);
+        in_final_format(&file, &self.id)?;
         Ok(Some(totals))
+    }
+}
+
+/// There is no file to record into.
+fn not_begun(error: RecordError) -> Failure {
+    match error {
+        RecordError::Disk {
+            path,
+            doing,
+            source,
+        } => Failure::at(&path, doing, &source),
+        _ => Failure::input(error),
     }
 }
 
@@ -128,25 +140,23 @@ pub(crate) fn extension() -> &'static str {
 }
 
 /// Replaces a finished recording by its Parquet file, if this program can. If
-/// that fails, the recording stays as it is.
-fn in_final_format(file: &Path, id: &str) {
+/// that fails, the recording stays as it is. It is an error if its file has been removed or replaced.
+fn in_final_format(file: &Path, id: &str) -> Result<(), Failure> {
     let Some(writer) = parquet_writer() else {
-        return;
+        // It was written to the end, whatever its name is now.
+        return fs::metadata(file)
+            .map(|_| ())
+            .map_err(|e| lost(&Failure::at(file, "cannot be read", &e).into_text()));
     };
     // What ended the recording must not end this; but it may be stopped, too.
     interrupt::forget();
-    let recording = Recording::open(file, Damage::Refuse);
-    if (recording.as_ref()).is_ok_and(|recording| recording.metadata().id != id) {
-        warn(format!(
-            "{} is another recording now: this one was moved while it ran, and stays in the format of a \
-             recording in progress",
-            file.display()
-        ));
-        return;
+    let recording =
+        Recording::open(file, Damage::Refuse).map_err(|error| lost(&error.to_string()))?;
+    if recording.metadata().id != id {
+        let file = file.display();
+        return Err(lost(&format!("{file} is another recording now")));
     }
-    let made = recording
-        .map_err(Failure::input)
-        .and_then(|recording| written(&recording, file, Clash::Replace, writer));
+    let made = written(&recording, file, Clash::Replace, writer);
     if let Err(Failure::Input(error) | Failure::Work(error)) = made {
         warn(format!(
             "{error}; {} is whole, in the format of a recording in progress: `crepitus export {} \
@@ -155,6 +165,15 @@ fn in_final_format(file: &Path, id: &str) {
             shell::word(file)
         ));
     }
+    Ok(())
+}
+
+/// What was recorded is no longer in its file.
+fn lost(why: &str) -> Failure {
+    Failure::Work(format!(
+        "{why}: the recording was moved, removed or changed while it ran; if it was moved, it is whole, in the \
+         format of a recording in progress"
+    ))
 }
 
 /// Handling of an existing file of that name.

@@ -1,6 +1,6 @@
 //! The files that a run, a study or a recording's report leaves.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, warn};
 use crepitus_plot::{Figure, pictures};
 use crepitus_scene::Scene;
 use crepitus_scene::output::Folder;
@@ -175,6 +175,21 @@ pub(crate) fn remove_others(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Warns of pictures in the folder that are not of these files: earlier results', or somebody's own.
+fn warn_of_other_pictures(folder: &Path, names: &[String]) {
+    let is_picture = |name: &String| [".svg", ".pdf"].iter().any(|end| name.ends_with(end));
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let all = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut others: Vec<_> = all
+        .filter(|name| is_picture(name) && !names.contains(name))
+        .collect();
+    others.sort();
+    if !others.is_empty() {
+        let (folder, others) = (folder.display(), others.join(", "));
+        warn(format!("{folder}: not of these results: {others}"));
+    }
+}
+
 /// Writes files into a folder.
 fn fill(folder: &Folder, out: &Path, files: Files) -> Result<(), Failure> {
     for (name, content) in files {
@@ -191,10 +206,13 @@ fn fill(folder: &Folder, out: &Path, files: Files) -> Result<(), Failure> {
 
 /// Writes files into a folder, and moves it into place.
 pub(crate) fn write(folder: Folder, out: &Path, files: Files) -> Result<(), Failure> {
+    let names: Vec<_> = files.iter().map(|(name, _)| name.clone()).collect();
     fill(&folder, out, files)?;
     folder
         .commit()
-        .map_err(|e| Failure::at(out, "moving the results into place", &e))
+        .map_err(|e| Failure::at(out, "moving the results into place", &e))?;
+    warn_of_other_pictures(out, &names);
+    Ok(())
 }
 
 /// The last line of every report.

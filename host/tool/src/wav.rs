@@ -5,6 +5,8 @@ use clap::{Args, ValueEnum};
 use crepitus_recording::new_file;
 use crepitus_scene::trace::Column;
 use crepitus_sound::{Sound, SoundError, SoundSummary};
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Whether a sound is wanted, and of what.
@@ -88,6 +90,12 @@ impl Wav {
                 file.display()
             )));
         }
+        if is_of_another_kind(file) {
+            return Err(Failure::Input(format!(
+                "--wav {}: this file is no sound, and would be replaced: choose another name",
+                file.display()
+            )));
+        }
         new_file(file).map_err(|e| Failure::at(file, "cannot be written", &e))?;
         let sound = Sound::new(step_s).map_err(|e| failed(file, &e))?;
         Ok(Some(Listener {
@@ -96,6 +104,13 @@ impl Wav {
             file: file.clone(),
         }))
     }
+}
+
+/// Whether there is something in the file, and no sound.
+fn is_of_another_kind(file: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = File::open(file).and_then(|file| file.take(4).read_to_end(&mut head));
+    read.is_ok() && !head.is_empty() && head != *b"RIFF"
 }
 
 impl Listener {

@@ -135,7 +135,7 @@ impl Monitor {
     fn begin(&mut self, client: &mut Client<Line>) -> Result<(), Failure> {
         self.has_begun = true;
         if self.arming.zero {
-            client.zero().map_err(failure)?;
+            client.zero().map_err(|error| failure_with(client, error))?;
         }
         if self.arming.arm {
             client.arm().map_err(|error| failure_with(client, error))?;

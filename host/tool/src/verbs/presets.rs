@@ -1,6 +1,6 @@
 //! `crepitus presets [NAME]`.
 
-use crate::failure::{Failure, print, print_json, warn};
+use crate::failure::{Failure, print, print_json};
 use crate::own_presets;
 use clap::Args;
 use crepitus_client::values::show_number;
@@ -33,19 +33,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             print(&shown(&preset, file.as_deref()))
         };
     }
-    let mut own = Vec::new();
-    // Without the folder, those that ship are still of use.
-    let files = own_presets::files().unwrap_or_else(|failure| {
-        warn(failure.into_text());
-        Vec::new()
-    });
-    for file in files {
-        match Preset::read(&file) {
-            Ok(preset) => own.push((preset, file)),
-            // The others are still of use.
-            Err(error) => warn(error),
-        }
-    }
+    let own = own_presets::all();
     if as_json {
         let shipped = preset::shipped().iter().map(|preset| preset.to_json(None));
         let own = own.iter().map(|(preset, file)| preset.to_json(Some(file)));

@@ -16,7 +16,7 @@ use crate::wav::Wav;
 use clap::Args;
 use crepitus_report::{Setup, Text};
 use crepitus_scene::output::Folder;
-use crepitus_scene::shipped;
+use crepitus_scene::shipped::Source;
 use crepitus_scene::{Overrides, RunError, Scene, Summary, run as runner};
 use std::path::{Path, PathBuf};
 use watch::{Watch, WatchError};
@@ -145,7 +145,17 @@ fn read(arguments: &Arguments) -> Result<Scene, Failure> {
         as_device: arguments.as_device,
         set: arguments.set.clone(),
     };
-    Ok(shipped::scene(&arguments.scene, &overrides)?)
+    let source = Source::find(&arguments.scene)?;
+    let mut scene = source.scene(&overrides)?;
+    let now = option_env!("CREPITUS_COMMIT");
+    if let (Some(then), Some(now)) = (source.commit(), now)
+        && then != now
+    {
+        scene.warnings.push(format!(
+            "the run that is repeated was of commit {then}, and this program is of {now}: its numbers may differ"
+        ));
+    }
+    Ok(scene)
 }
 
 /// The failure of a run, for people.

@@ -26,6 +26,7 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        ratatui::restore();
+        // Not `restore`, which would print that the terminal is gone, to it.
+        let _ = ratatui::try_restore();
     }
 }

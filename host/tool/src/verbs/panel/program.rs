@@ -24,11 +24,8 @@ impl Program<Line> for ThisProgram {
     }
 
     fn own_presets(&self) -> Vec<Preset> {
-        let files = own_presets::files().unwrap_or_default();
-        files
-            .iter()
-            .filter_map(|file| Preset::read(file).ok())
-            .collect()
+        let own = own_presets::all().into_iter();
+        own.map(|(preset, _)| preset).collect()
     }
 
     fn save_preset(&self, name: &str, preset: &Preset, replace: bool) -> Result<(), String> {
