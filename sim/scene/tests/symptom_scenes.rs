@@ -1,7 +1,5 @@
 //! The symptoms besides crepitus in scenes, stepped at 20 kHz and by `reference`,
 //! against cases that an event-driven solver computed with 60 digits.
-//!
-//! They are in `shared/truth/disorders` beside the repository.
 
 use crepitus_scene::run::columns;
 use crepitus_scene::trace::SymptomEvent;
@@ -157,17 +155,15 @@ fn compare(case: &Case, worst: (f64, f64)) -> (f64, f64, f64) {
 }
 
 fn all(solver: &str, worst: (f64, f64)) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/truth/disorders");
-    let Ok(entries) = std::fs::read_dir(&folder) else {
-        println!("left out: there are no cases in {}", folder.display());
-        return;
-    };
-    let mut paths: Vec<_> = entries
+    let folder =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/reference-cases/disorders");
+    let mut paths: Vec<_> = std::fs::read_dir(&folder)
+        .expect("the folder of cases")
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.extension().is_some_and(|e| e == "json"))
         .collect();
     paths.sort();
-    assert!(!paths.is_empty());
+    assert!(paths.len() >= 8, "{paths:?}");
     for path in paths {
         let case = case(&path, solver);
         let (late_s, event_nm, tick_nm) = compare(&case, worst);

@@ -1,6 +1,5 @@
 //! Cases computed with 60 digits by a program that shares no code with this
-//! one: files of schema `disorder-events/1` in a folder `shared/truth/disorders`
-//! beside the repository.
+//! one: files of schema `disorder-events/1`.
 
 use crate::support::{Given, TIME_S, TORQUE_NM, constant, jumps, symptom};
 use crepitus_plant::Motion;
@@ -15,18 +14,15 @@ fn number(value: &Value) -> f64 {
 }
 
 fn cases() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let folder = root.join("../shared/truth/disorders");
-    let Ok(entries) = std::fs::read_dir(&folder) else {
-        eprintln!("skipped: no cases in {}", folder.display());
-        return Vec::new();
-    };
-    let mut paths: Vec<_> = entries
+    let folder =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/reference-cases/disorders");
+    let mut paths: Vec<_> = std::fs::read_dir(&folder)
+        .expect("the folder of cases")
         .map(|e| e.unwrap().path())
         .filter(|p| p.extension().is_some_and(|e| e == "json"))
         .collect();
     paths.sort();
-    assert!(!paths.is_empty(), "no cases in {}", folder.display());
+    assert!(paths.len() >= 8, "{paths:?}");
     paths
 }
 
