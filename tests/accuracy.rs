@@ -350,6 +350,8 @@ fn a_scene_without_events_is_studied_too() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let (header, rows) = csv(&out.join("points.csv"));
     let tick = header.iter().position(|h| h == "rms_tick_torque_error_nm");
+    // Four rungs in two precisions, one step.
+    assert_eq!(rows.len(), 8);
     for row in &rows {
         assert_eq!(row[5..8], ["0", "0", "0"], "{row:?}");
         assert_eq!(row[8], "nan");
@@ -399,10 +401,12 @@ fn the_target_adds_cycles_to_points_summary_and_report() {
 
     let (header, rows) = csv(&out.join("points.csv"));
     let column = |name: &str| header.iter().position(|h| h == name).unwrap();
+    let mut rungs = 0;
     for row in &rows {
         let cell = |name: &str| number(&row[column(name)]);
         let on_the_device = row[column("precision")] == "f32" && cell("step_s") == 5e-5;
         if on_the_device {
+            rungs += 1;
             assert!(
                 cell("instructions_per_step") < cell("cycles_per_step"),
                 "{row:?}"
@@ -413,6 +417,7 @@ fn the_target_adds_cycles_to_points_summary_and_report() {
             assert!(cell("cycles_per_step").is_nan(), "{row:?}");
         }
     }
+    assert_eq!(rungs, 4);
     let target = &summary(&out)["target"];
     assert_eq!(target["label"], label);
     // Four rungs, the check, the renderer, the encoder, ten effects and four of them in

@@ -245,7 +245,7 @@ fn what_is_refused_has_its_exit_code_and_its_reason() {
 
 #[cfg(target_os = "linux")]
 mod on_a_served_device {
-    use super::{WEIGHT, support};
+    use super::{WEIGHT, moved_to, support};
     use serde_json::Value;
     use std::process::{Child, Stdio};
     use std::thread::sleep;
@@ -294,6 +294,30 @@ mod on_a_served_device {
     fn ended(child: Child) -> (Option<i32>, String) {
         let done = child.wait_with_output().unwrap();
         (done.status.code(), support::stderr(&done))
+    }
+
+    #[test]
+    fn what_is_applied_is_saved() {
+        let folder = tempfile::tempdir().unwrap();
+        let served = Served::with_scene(&moved_to(folder.path(), -10.0, 128.0));
+        assert!(served.run(&["zero", "--device", "knee"]).status.success());
+        let before = parameters(&served);
+        let steps = ["calibrate", "--device", "knee", "--yes", "--steps", "range"];
+        let more = ["--for", "7s", "--apply", "--json"];
+        let done = served.run(&[&steps[..], &more].concat());
+        assert!(done.status.success(), "{}", support::stderr(&done));
+        let json: Value = serde_json::from_str(&stdout(&done)).unwrap();
+        let (set, now) = (&json["calibration"], parameters(&served));
+        let changes = set["parameters"].as_array().unwrap();
+        assert!(!changes.is_empty());
+        for change in changes {
+            let name = change["name"].as_str().unwrap();
+            assert_eq!(now[name], change["value"], "{name}");
+            assert_ne!(now[name], before[name], "{name}");
+        }
+        let status = &served.info()["status"];
+        assert_eq!(status["revision"], set["revision"]);
+        assert_eq!(status["saved"], set["revision"]);
     }
 
     #[test]

@@ -34,6 +34,8 @@ fn info_reports_identity_and_status() {
     let info = json(&["info"]);
     assert_eq!(info["status"]["state"], "disarmed");
     assert_eq!(info["comms"]["schema"], info["drive"]["schema"]);
+    let schema = info["drive"]["schema"].as_str().unwrap();
+    assert_eq!(schema.len(), 16, "{schema}");
     assert_eq!(info["status"]["revision"], info["status"]["in_force"]);
     assert_eq!(info["counters"]["drive"]["dropped-samples"], 0);
     assert!(done(&["info"]).contains("state   disarmed"));
@@ -79,6 +81,22 @@ fn parameters_are_listed_read_and_set() {
         assert_eq!(json(&["params", "apply", what])["revision"], 2, "{what}");
     }
     done(&["params", "save"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_is_saved_is_the_revision_in_use() {
+    let served = support::served::Served::new();
+    let set = served.run(&["params", "set", "crepitus.static_torque_nm=0.5"]);
+    assert!(set.status.success(), "{}", stderr(&set));
+    let before = &served.info()["status"];
+    assert_eq!(before["revision"], 2);
+    assert_ne!(before["saved"], before["revision"]);
+    let saved = served.run(&["params", "save"]);
+    assert!(saved.status.success(), "{}", stderr(&saved));
+    let after = &served.info()["status"];
+    assert_eq!(after["revision"], before["revision"]);
+    assert_eq!(after["saved"], after["revision"]);
 }
 
 /// A rejected request reports the cause and the remedy.
@@ -310,6 +328,46 @@ fn what_would_count_for_nothing_is_refused() {
         assert!(stderr(&output).contains(part), "{}", stderr(&output));
     }
     assert_eq!(support::names(home.path()), Vec::<String>::new());
+}
+
+/// In a hurry nobody types a name.
+#[cfg(target_os = "linux")]
+#[test]
+fn stop_without_a_name_stops_every_device() {
+    use std::io::{BufRead, BufReader};
+    use std::process::Stdio;
+    use support::served::{Served, ended, until};
+    let served = Served::new();
+    let mut second = served
+        .command(&["serve-sim", "--name", "left"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    let out = second.stdout.as_mut().unwrap();
+    BufReader::new(out).read_line(&mut line).unwrap();
+    let mut arms = ["knee", "left"].map(|name| {
+        served
+            .command(&["arm", "--zero", "--device", name])
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap()
+    });
+    for name in ["knee", "left"] {
+        until("armed", || {
+            let output = served.run(&["info", "--json", "--device", name]);
+            stdout(&output).contains("\"armed\"")
+        });
+    }
+    let output = served.run(&["stop"]);
+    let said = stdout(&output);
+    assert!(said.starts_with("stopped 2 devices; "), "{said}");
+    for arm in &mut arms {
+        assert!(said.contains(&format!("process {} ", arm.id())), "{said}");
+        assert!(!ended(arm).success());
+    }
+    second.kill().unwrap();
+    second.wait().unwrap();
 }
 
 #[cfg(target_os = "linux")]

@@ -60,6 +60,8 @@ fn every_verb_works_on_the_images() {
     let info = json(&["info"]);
     assert_eq!(info["status"]["state"], "disarmed");
     assert_eq!(info["comms"]["schema"], info["drive"]["schema"]);
+    let schema = info["drive"]["schema"].as_str().expect("a text");
+    assert_eq!(schema.len(), 16, "{schema}");
     assert_eq!(info["status"]["revision"], info["status"]["in_force"]);
     assert_eq!(info["counters"]["drive"]["dropped-samples"], 0);
     let records = json(&["info", "--crash"]);

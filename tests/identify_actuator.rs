@@ -190,9 +190,41 @@ fn apply_sets_the_parameters_of_the_device() {
     ]);
     assert!(done.status.success(), "{}", stderr(&done));
     let printed: Value = serde_json::from_str(&stdout(&done)).unwrap();
-    assert!(printed["revision"].as_u64().unwrap() > 0, "{printed}");
+    assert!(printed["revision"].as_u64().unwrap() > 1, "{printed}");
     let in_use = &value(&printed["identified"], "vibration-actuator.resonance_hz")["in_use"];
     assert_eq!(in_use.as_f64(), Some(35.0));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_device_has_what_was_applied() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("bench.csv");
+    recorded(&OURS, &csv);
+    let csv = csv.to_str().unwrap();
+    let served = support::served::Served::new();
+    let verb = ["--json", "identify-actuator", "--moving-mass-g", "52"];
+    let more = ["--from", csv, "--device", "knee", "--apply"];
+    let done = served.run(&[&verb[..], &more].concat());
+    assert!(done.status.success(), "{}", stderr(&done));
+    let printed: Value = serde_json::from_str(&stdout(&done)).unwrap();
+    let got = served.run(&["--json", "params", "get", "--device", "knee"]);
+    let got: Value = serde_json::from_str(&stdout(&got)).unwrap();
+    assert_eq!(got["revision"], printed["revision"]);
+    let values = printed["identified"]["values"].as_array().unwrap();
+    let mut applied = 0;
+    for found in values {
+        // Some of what is found is no parameter.
+        let Some(name) = found["parameter"].as_str() else {
+            continue;
+        };
+        let [found, in_use, now] = [&found["value"], &found["in_use"], &got["values"][name]]
+            .map(|number| number.as_f64().unwrap());
+        assert_ne!(found, in_use, "{name}");
+        assert!((now / found - 1.0).abs() < 1e-6, "{name}: {found}, {now}");
+        applied += 1;
+    }
+    assert_eq!(applied, 5);
 }
 
 #[test]
@@ -211,7 +243,7 @@ fn a_simulated_device_plays_the_chirp_and_its_actuator_is_found() {
     let done = run(&[&verb[..], &["--out", out.to_str().unwrap()], &device].concat());
     assert!(done.status.success(), "{}{}", stdout(&done), stderr(&done));
     let printed: Value = serde_json::from_str(&stdout(&done)).unwrap();
-    assert!(printed["revision"].as_u64().unwrap() > 0);
+    assert!(printed["revision"].as_u64().unwrap() > 1);
     // What the scene's actuator is, which the device does not know.
     for (name, truth) in [
         ("vibration-actuator.resonance_hz", 41.0),

@@ -256,6 +256,12 @@ fn a_run_can_be_heard() {
     assert!(once == fs::read(&file).unwrap());
 
     refused("slow-examination", &["--wav", "knee.mp3"], &[".wav"]);
+    // Whatever its name is, what is no sound is not replaced by one.
+    let other = home.path().join("other.wav");
+    fs::write(&other, "CREPITUS").unwrap();
+    let named = other.to_str().unwrap();
+    refused("slow-examination", &["--wav", named], &["is no sound"]);
+    assert_eq!(fs::read(&other).unwrap(), b"CREPITUS");
     refused(
         "slow-examination",
         &["--wav", "k.wav", "--wav-of", "hand"],

@@ -134,6 +134,14 @@ fn a_run_of_another_version_is_repeated_with_a_warning() {
     fs::write(&file, summary.to_string()).unwrap();
     let said = done(home.path(), &["a/summary.json", "--out", "c"]);
     assert!(said.contains("was of crepitus 0.0.7"), "{said}");
+    // Between two releases all builds have one version.
+    if summary["crepitus_commit"].is_string() {
+        summary["crepitus_version"] = env!("CARGO_PKG_VERSION").into();
+        summary["crepitus_commit"] = "0123456789ab".into();
+        fs::write(&file, summary.to_string()).unwrap();
+        let said = done(home.path(), &["a/summary.json", "--out", "d"]);
+        assert!(said.contains("was of commit 0123456789ab"), "{said}");
+    }
 }
 
 #[test]
@@ -205,6 +213,17 @@ fn a_folder_keeps_its_run() {
     assert_eq!(
         names(&home.join("out/fig6-ideal-cycle")),
         ["events.csv", "summary.json"]
+    );
+
+    // Pictures have the names of their figures, or are somebody's own: they stay, and are named.
+    done(home, &[&long[..], &["--pictures"]].concat());
+    fs::write(home.join("out/fig6-ideal-cycle/bench.svg"), "<svg/>").unwrap();
+    let said = done(home, &[&short[..], &["--force", "--pictures"]].concat());
+    assert!(said.contains("not of these results: bench.svg\n"), "{said}");
+    let said = done(home, &[&long[..], &["--force"]].concat());
+    assert!(
+        said.contains("bench.svg, ") && said.contains("torque.svg"),
+        "{said}"
     );
 }
 

@@ -23,6 +23,22 @@ const GRID: [&str; 6] = [
     "duration_s=0.5",
 ];
 
+/// So many short runs that on any computer a part is written before the last of them: after
+/// 8192 rows, or two seconds.
+const MANY: [&str; 11] = [
+    "low-speed",
+    "--latin",
+    "16000",
+    "--seed",
+    "5",
+    "--vary",
+    "effects.crepitus.stiffness_nm_per_rad=60:300:log",
+    "--vary",
+    "effects.crepitus.preset=coarse,fine",
+    "--set",
+    "duration_s=5e-4",
+];
+
 fn sweep_in(home: &Path, arguments: &[&str]) -> Output {
     crepitus()
         .arg("sweep")
@@ -42,6 +58,12 @@ fn refused(home: &Path, arguments: &[&str], code: i32) -> String {
     let output = sweep_in(home, arguments);
     assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
     stderr(&output)
+}
+
+/// How many parts a folder has; one that is being written has a name with a dot before it.
+fn whole_parts(folder: &Path) -> usize {
+    let names = names(&folder.join("parts"));
+    names.iter().filter(|name| !name.starts_with('.')).count()
 }
 
 /// The cell of a column in each row.
@@ -129,33 +151,35 @@ fn rows_do_not_depend_on_cores_or_on_kills() {
         "--set",
         "duration_s=0.2",
     ];
-    let in_folder =
-        |folder, threads| [&["--out", folder, "--threads", threads], &sweep[..]].concat();
     for format in ["csv", "parquet"] {
-        let _ = fs::remove_dir_all(home.join("one"));
-        let _ = fs::remove_dir_all(home.join("three"));
-        let with = |arguments: Vec<&'static str>| [arguments, vec!["--format", format]].concat();
-        done(home, &with(in_folder("one", "1")));
-        done(home, &with(in_folder("three", "3")));
+        for folder in ["one", "three", "whole", "killed"] {
+            let _ = fs::remove_dir_all(home.join(folder));
+        }
+        let with = |sweep: &[&'static str], folder, threads| {
+            let how = ["--out", folder, "--threads", threads, "--format", format];
+            [&how[..], sweep].concat()
+        };
+        done(home, &with(&sweep, "one", "1"));
+        done(home, &with(&sweep, "three", "3"));
         let read = |folder| fs::read(home.join(folder).join(format!("sweep.{format}"))).unwrap();
         assert!(read("one") == read("three"), "{format}: cores");
 
         // Killed each time that there is a new part, and begun again.
-        let _ = fs::remove_dir_all(home.join("killed"));
+        done(home, &with(&MANY, "whole", "2"));
         let mut kills = 0;
         while !home.join("killed").join(format!("sweep.{format}")).exists() && kills < 3 {
             let mut child = crepitus()
                 .arg("sweep")
-                .args(with(in_folder("killed", "1")))
+                .args(with(&MANY, "killed", "1"))
                 .current_dir(home)
                 .stdout(Stdio::null())
                 .stderr(Stdio::null())
                 .spawn()
                 .unwrap();
-            let before = names(&home.join("killed/parts")).len();
+            let before = whole_parts(&home.join("killed"));
             let begun = Instant::now();
             while child.try_wait().unwrap().is_none()
-                && names(&home.join("killed/parts")).len() <= before
+                && whole_parts(&home.join("killed")) <= before
                 && begun.elapsed() < Duration::from_mins(1)
             {
                 std::thread::sleep(Duration::from_millis(5));
@@ -164,9 +188,10 @@ fn rows_do_not_depend_on_cores_or_on_kills() {
             let _ = child.kill();
             let _ = child.wait();
         }
-        done(home, &with(in_folder("killed", "2")));
+        assert!(kills > 0, "{format}: it was over before it was killed");
+        done(home, &with(&MANY, "killed", "2"));
         assert!(
-            read("one") == read("killed"),
+            read("whole") == read("killed"),
             "{format}: killed {kills} times"
         );
         let mut left = vec!["sweep.json".to_owned(), format!("sweep.{format}")];
@@ -337,28 +362,20 @@ fn traces_are_those_of_single_runs() {
 fn an_interrupted_sweep_goes_on() {
     let home = tempfile::tempdir().unwrap();
     let home = home.path();
-    let arguments = [
-        "everything",
-        "--out",
-        "s",
-        "--threads",
-        "1",
-        "--format",
-        "csv",
-        "--vary",
-        "effects.crepitus.static_torque_nm=2:4:lin2000",
-    ];
+    let how = ["--out", "s", "--threads", "1", "--format", "csv"];
+    let arguments = [&how[..], &MANY].concat();
     let child = crepitus()
         .arg("sweep")
-        .args(arguments)
+        .args(&arguments)
         .current_dir(home)
         .stderr(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn()
         .unwrap();
     let begun = Instant::now();
-    while names(&home.join("s/parts")).is_empty() && begun.elapsed() < Duration::from_mins(1) {
-        std::thread::sleep(Duration::from_millis(20));
+    while whole_parts(&home.join("s")) == 0 {
+        assert!(begun.elapsed() < Duration::from_mins(1), "there is no part");
+        std::thread::sleep(Duration::from_millis(5));
     }
     let kill = Command::new("kill")
         .args(["-INT", &child.id().to_string()])
@@ -374,6 +391,13 @@ fn an_interrupted_sweep_goes_on() {
     );
     let parts = names(&home.join("s/parts"));
     assert!(!parts.is_empty() && parts.iter().all(|p| !p.starts_with('.')));
+    // Only the others run.
+    let again = [&arguments[..], &["--json"]].concat();
+    let told: Value = serde_json::from_str(&done(home, &again)).unwrap();
+    let ran = told["ran"].as_u64().unwrap();
+    assert!((1..16_000).contains(&ran), "{told}");
+    let (_, rows) = table(&home.join("s/sweep.csv"));
+    assert_eq!(rows.len(), 16_000);
 }
 
 #[test]

@@ -16,6 +16,8 @@ fn monitor_shows_a_device_and_obeys_keys() {
     let mut terminal = Terminal::new("monitor --device sim --zero --arm --target medium", None);
     terminal.until("medium:");
     terminal.until("ARMED");
+    // Not the end of another word.
+    assert!(!terminal.shown().contains("DISARMED"));
     terminal.press("m");
     terminal.press("t");
     terminal.until("ashworth");
@@ -117,6 +119,8 @@ fn calibrate_says_what_to_do_and_goes_on_by_enter() {
     terminal.until("polarity: ");
     // A key that means nothing does nothing.
     terminal.press("x");
+    sleep(Duration::from_millis(500));
+    assert!(!terminal.shown().contains("left out by hand"));
     terminal.press("s");
     terminal.until("left out by hand");
     let (code, shown) = terminal.end();

@@ -109,8 +109,11 @@ def test_parameters_are_set_all_or_none(device: Device) -> None:
 def test_knees_are_applied_as_the_tool_does(device: Device, tmp_path: Path) -> None:
     device.apply("mas-2-catch")
     assert device.get("spasticity.render") == "on" and device.get("crepitus.render") == "off"
-    device.apply("texture-mild" if "texture-mild" in crepitus.presets() else "coarse", add=True)
-    assert device.get("spasticity.render") == "on"
+    # Not the preset's, so that it has to change.
+    device.set({"crepitus.static_torque_nm": 0.5})
+    device.apply("coarse", add=True)
+    assert device.get("spasticity.render") == "on" and device.get("crepitus.render") == "on"
+    assert device.get("crepitus.static_torque_nm") == 0.4
     device.apply("bone-shaping")
     assert device.get("bone-shaping.render") == "on" and device.get("spasticity.render") == "off"
     device.apply(crepitus.Scene("passive-examination").set("effects.crepitus.preset", "fine"))
@@ -252,16 +255,25 @@ def test_stop_ends_what_another_thread_does() -> None:
 
 
 def test_threads_take_turns(device: Device) -> None:
+    results: list[object] = []
+
     def use() -> None:
-        for _ in range(20):
-            device.stream(0.01)
-            device.get("crepitus.static_torque_nm")
+        try:
+            for _ in range(20):
+                device.stream(0.01)
+                device.get("crepitus.static_torque_nm")
+            results.append("finished")
+        except Exception as error:
+            # An exception in a thread ends that thread only.
+            results.append(error)
 
     threads = [threading.Thread(target=use) for _ in range(4)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join(timeout=60)
+    assert not any(thread.is_alive() for thread in threads)
+    assert results == ["finished"] * 4
     assert device.info()["faults"] == []
 
 

@@ -79,7 +79,7 @@ impl Panel {
     /// A page of a link that was told all that there is.
     fn page(&self, link: &str) -> Page {
         let (_, token) = link.split_once('#').unwrap();
-        let mut page = Page::open(&self.host, token);
+        let mut page = Page::open(&self.host, Some(token));
         page.until("the first messages", |page| {
             let has = |name: &str| page.latest.contains_key(name);
             let is_replay = has("hello") && page.latest["hello"]["source"]["kind"] == "replay";
@@ -179,8 +179,8 @@ pub(crate) struct Page {
 }
 
 impl Page {
-    /// Connects and says this token.
-    pub(crate) fn open(host: &str, token: &str) -> Self {
+    /// Connects and says this token, or nothing.
+    pub(crate) fn open(host: &str, token: Option<&str>) -> Self {
         let mut request = format!("ws://{host}/ws").into_client_request().unwrap();
         let origin = format!("http://{host}").parse().unwrap();
         request.headers_mut().insert("origin", origin);
@@ -189,8 +189,10 @@ impl Page {
         (socket.get_mut())
             .set_read_timeout(Some(Duration::from_millis(2)))
             .unwrap();
-        let first = json!({ "token": token }).to_string();
-        socket.send(Message::text(first)).unwrap();
+        if let Some(token) = token {
+            let first = json!({ "token": token }).to_string();
+            socket.send(Message::text(first)).unwrap();
+        }
         Self {
             socket,
             latest: HashMap::new(),

@@ -68,11 +68,15 @@ impl Terminal {
         }
     }
 
+    /// All that it has written so far.
+    pub(crate) fn shown(&self) -> String {
+        self.shown.lock().unwrap().clone()
+    }
+
     pub(crate) fn end(&mut self) -> (i32, String) {
         let code = self.child.wait().unwrap().code().unwrap();
         sleep(Duration::from_millis(50));
-        let shown = self.shown.lock().unwrap().clone();
-        (code, shown)
+        (code, self.shown())
     }
 }
 

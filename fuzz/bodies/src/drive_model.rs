@@ -32,6 +32,9 @@ const OVERCURRENT_MA: i16 = 2_500;
 /// Milliseconds of arming, in which it awaits the line of comms.
 const ARMING_MS: u8 = 3;
 
+/// The most restarts: blocks carry five bits of their count.
+const MOST_RESTARTS: u32 = 30;
+
 /// The drive.
 #[expect(clippy::struct_excessive_bools, reason = "each is a fact by itself")]
 pub(crate) struct DriveModel {
@@ -50,6 +53,7 @@ pub(crate) struct DriveModel {
     has_sent_hello: bool,
     has_rejected: bool,
     has_restarted: bool,
+    restarts: u32,
     /// The latest tick that it has reported since.
     latest_tick: u64,
     reassembly: (Revision, Reassembly),
@@ -78,6 +82,7 @@ impl DriveModel {
             has_sent_hello: false,
             has_rejected: false,
             has_restarted: false,
+            restarts: 0,
             latest_tick: 0,
             reassembly: (Revision::NONE, Reassembly::new(0, 0)),
             crash_part: None,
@@ -320,10 +325,13 @@ impl DriveModel {
             // It has restarted.
             1 => {
                 // Mostly with the next number. The books see five bits of it: one
-                // of long ago would be taken for the same start.
+                // of long ago would be taken for the same start, so it is not that often.
                 let start = match bytes.byte() {
-                    0..64 => self.status.start,
-                    _ => self.status.start.wrapping_add(1),
+                    64.. if self.restarts < MOST_RESTARTS => {
+                        self.restarts += 1;
+                        self.status.start.wrapping_add(1)
+                    }
+                    _ => self.status.start,
                 };
                 // Without a change comms keeps on with the ticks of before.
                 if start != self.status.start {

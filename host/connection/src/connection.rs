@@ -52,6 +52,15 @@ impl Connection {
         Ok(Self::Simulated(Box::new(simulated)))
     }
 
+    /// The ports of all devices that are attached.
+    ///
+    /// # Errors
+    /// [`OpenError::Discovery`].
+    pub fn attached() -> Result<Vec<String>, OpenError> {
+        let devices = discovery::devices().map_err(OpenError::Discovery)?;
+        Ok(devices.into_iter().map(|device| device.port).collect())
+    }
+
     /// Limits a device in this process to real time; a device at a port is unchanged.
     pub fn in_real_time(self) -> Self {
         match self {
@@ -209,7 +218,8 @@ mod tests {
         // Names of simulated devices.
         let names = ["comms", "COM", "compass", "com3x"];
         for name in names {
-            assert!(port(name, || served(&names)).unwrap().ends_with(name));
+            let port = port(name, || served(&names)).unwrap();
+            assert_eq!(port, format!("/run/crepitus/{name}"));
         }
     }
 

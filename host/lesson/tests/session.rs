@@ -178,12 +178,17 @@ fn check_files(folder: &SessionFolder, session: &Session) {
     }
 }
 
+/// The panel's texts of a language.
+fn texts(language: &str) -> BTreeMap<String, String> {
+    let strings = Path::new(env!("CARGO_MANIFEST_DIR")).join("../panel/assets/strings");
+    let table = fs::read_to_string(strings.join(language).with_extension("json")).unwrap();
+    serde_json::from_str(&table).unwrap()
+}
+
 /// The report in both languages, kept beside each other.
 fn reports(folder: &SessionFolder, session: &Session) -> [(&'static str, String); 2] {
     ["en", "de"].map(|name| {
-        let strings = Path::new(env!("CARGO_MANIFEST_DIR")).join("../panel/assets/strings");
-        let table = fs::read_to_string(strings.join(name).with_extension("json")).unwrap();
-        let table: BTreeMap<String, String> = serde_json::from_str(&table).unwrap();
+        let table = texts(name);
         let text = |key: &str| {
             assert!(report::KEYS.contains(&key), "{key} is not in the list");
             table[key].clone()
@@ -216,8 +221,26 @@ fn a_report_holds_every_disorder() {
     session.lesson.end().unwrap();
     let summary = session.lesson.view(None).summary.unwrap();
     assert_eq!(summary.all.confusion.columns.len(), 10);
-    for (_, page) in reports(&folder, &session) {
+    for (language, page) in reports(&folder, &session) {
         assert!(page.contains("class=\"student\""));
+        let texts = texts(language);
+        let tables = page.split("<table class=\"confusion\">").skip(1);
+        let tables: Vec<_> = tables
+            .map(|rest| rest.split_once("</table>").unwrap().0)
+            .collect();
+        assert_eq!(tables.len(), summary.students.len());
+        for finding in Finding::all() {
+            let text = &texts[&format!("report.disorder.{}", finding.name())];
+            let heading = format!("<th scope=\"col\"><span>{text}</span></th>");
+            let mut is_anywhere = false;
+            for (student, table) in summary.students.iter().zip(&tables) {
+                let is_here = table.contains(&heading);
+                let columns = &student.scores.confusion.columns;
+                assert_eq!(is_here, columns.contains(&finding), "{language}: {text}");
+                is_anywhere |= is_here;
+            }
+            assert!(is_anywhere, "{language}: {text}");
+        }
     }
 }
 

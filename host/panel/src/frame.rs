@@ -148,15 +148,24 @@ mod tests {
 
     #[test]
     fn what_is_masked_is_not_in_the_bytes() {
-        let masks = Masks {
-            torque: true,
-            states: true,
-        };
-        let bytes = frame(&header(masks), &[a_bin()]);
-        let float = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
-        assert!((0..4).all(|n| float(HEADER + 4 * n).is_nan()));
-        assert_eq!(float(HEADER + 16), 3.0);
-        assert_eq!(bytes[HEADER + 32..], [0; 8]);
-        assert_eq!(bytes[36], 3);
+        // Each alone: the one must not stand for the other.
+        for (torque, states) in [(true, false), (false, true), (true, true)] {
+            let bytes = frame(&header(Masks { torque, states }), &[a_bin()]);
+            let float = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+            let torques: Vec<_> = (0..4).map(|n| float(HEADER + 4 * n)).collect();
+            if torque {
+                assert!(torques.iter().all(|torque| torque.is_nan()));
+            } else {
+                assert_eq!(torques, [1.0, 1.0, 2.0, 2.0]);
+            }
+            assert_eq!(float(HEADER + 16), 3.0);
+            let rest = if states {
+                [0; 8]
+            } else {
+                [5, 0, 0, 0, 6, 0, 1, 0]
+            };
+            assert_eq!(bytes[HEADER + 32..], rest);
+            assert_eq!(bytes[36], u8::from(torque) | u8::from(states) << 1);
+        }
     }
 }

@@ -364,6 +364,7 @@ mod tests {
     use crate::fixture::{Motion, Run};
     use crepitus_model::render::effects::EffectSettings;
     use std::cell::RefCell;
+    use std::ops::Range;
 
     #[test]
     fn memory_does_not_grow_with_the_run() {
@@ -432,11 +433,11 @@ mod tests {
         assert!(high - low < 0.5, "the weight is gone: {low} to {high}");
     }
 
-    /// Ten seconds, of which two are missing: nothing reaches across.
+    /// Ten seconds, of which two are missing, or a part of the onset: nothing reaches across.
     #[test]
     fn no_phase_window_or_spectrum_reaches_across_a_gap() {
         let columns = Run::columns(true, false);
-        let collect = |says_so: bool| {
+        let collect = |missing: &Range<f64>, says_so: bool| {
             let collector = RefCell::new(Collector::new(&Setup {
                 columns: &columns,
                 rows_expected: 160_000,
@@ -445,10 +446,9 @@ mod tests {
                 effects: EffectSettings::default(),
             }));
             let before = RefCell::new(0.0);
-            let is_missing = |time_s: f64| (4.0..6.0).contains(&time_s);
             Run::new(Motion::Constant { speed: 1.0 }, 10.0, 5e-5).play(
                 |row| {
-                    if is_missing(row[0]) {
+                    if missing.contains(&row[0]) {
                         return;
                     }
                     let before = before.replace(row[0]);
@@ -458,7 +458,7 @@ mod tests {
                     collector.borrow_mut().row(row);
                 },
                 |event| {
-                    if !is_missing(event.time_s) {
+                    if !missing.contains(&event.time_s) {
                         collector.borrow_mut().event(event);
                     }
                 },
@@ -469,20 +469,25 @@ mod tests {
             let bins = figures.envelope.bins.iter();
             bins.map(crate::envelope::Bin::known_s).sum()
         };
-        let (with, without) = (collect(true), collect(false));
+        let spans = |figures: &Figures, gap: &Range<f64>| {
+            let window = figures.onset.as_ref().expect("a window");
+            window.start < gap.start && window.end > gap.end
+        };
+        let gap = 4.0..6.0;
+        let (with, without) = (collect(&gap, true), collect(&gap, false));
         assert_eq!((with.gaps.len(), without.gaps.len()), (1, 0));
         assert!((known_s(&with) - 8.0).abs() < 0.1, "{}", known_s(&with));
         assert!(known_s(&without) > 9.9);
-        let spans = |window: &Option<Window>| {
-            let window = window.as_ref().expect("a window");
-            window.start < 4.0 && window.end > 6.0
-        };
-        assert!(!spans(&with.onset));
+        assert!(!spans(&with, &gap));
         let segments = |figures: &Figures| {
             let spectrum = figures.spectrum.as_ref().expect("long enough");
             spectrum.points.iter().map(|point| point.y).sum::<f64>()
         };
         assert!(segments(&with) != segments(&without));
+        // A cycle lasts 31 ms, so the onset would last to 0.13 s.
+        let gap = 0.05..0.1;
+        let (with, without) = (collect(&gap, true), collect(&gap, false));
+        assert!(spans(&without, &gap) && !spans(&with, &gap));
     }
 
     #[test]

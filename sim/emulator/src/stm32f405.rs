@@ -67,6 +67,8 @@ pub struct Stm32f405 {
     fast_path: FastPath,
     now: u64,
     cycles: u64,
+    /// Those that the fast path has executed.
+    fast_cycles: u64,
     /// Cycles of the core's clock, those in which it sleeps too.
     clock: u64,
     /// Number of active exceptions.
@@ -107,6 +109,7 @@ impl Stm32f405 {
             memory,
             now: 0,
             cycles: 0,
+            fast_cycles: 0,
             clock: 0,
             active: 0,
             exception: 0,
@@ -227,6 +230,11 @@ impl Stm32f405 {
     /// The core's program counter.
     pub fn program_counter(&self) -> u32 {
         self.core.pc()
+    }
+
+    /// Of all executed cycles, those without the library's help.
+    pub fn fast_cycles(&self) -> u64 {
+        self.fast_cycles
     }
 
     /// A core register.
@@ -361,6 +369,7 @@ impl Stm32f405 {
             }
         };
         let cycles = self.fast_path.run(&self.core, self.clock, most, each);
+        self.fast_cycles += cycles;
         self.cycles += cycles;
         self.clock += cycles;
         self.now += cycles * units;

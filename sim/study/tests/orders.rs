@@ -211,9 +211,10 @@ fn recorded_knees_have_the_same_orders() {
     }
     let orders = orders_on(&scenes).unwrap();
     print(&scenes, &orders);
-    for scene in &scenes {
-        if scene.settings.convention == Convention::Physical {
-            better_by(1.0, scene);
-        }
-    }
+    let physical = scenes
+        .iter()
+        .filter(|scene| scene.settings.convention == Convention::Physical);
+    let compared: usize = physical.map(|scene| better_by(1.0, scene)).sum();
+    // Elsewhere a rung finds other events.
+    assert!(compared >= 3, "{compared}");
 }

@@ -41,6 +41,57 @@ impl UsbWire for Script {
     }
 }
 
+/// A serial port that is well-behaved until it answers by a script.
+#[derive(Debug)]
+struct Turned {
+    request: [u8; 8],
+    /// Bytes of the answer to it.
+    sent: usize,
+    then: Option<Script>,
+}
+
+impl Turned {
+    /// What the request asks for.
+    fn answer(&self) -> &'static [u8] {
+        let [_, request, index, kind, ..] = self.request;
+        match (request, kind, index) {
+            (6, 1, _) => &[18, 1, 0, 2, 2, 0, 0, 64, 1, 2, 3, 4, 5, 6, 1, 2, 3, 1],
+            (6, 2, _) => &SERIAL_CONFIGURATION,
+            (6, 3, 0) => &[4, 3, 9, 4],
+            (6, 3, _) => &[4, 3, b'x', 0],
+            _ => &[],
+        }
+    }
+}
+
+impl UsbWire for Turned {
+    fn bus_reset(&mut self) {}
+
+    fn setup_transaction(&mut self, _token: Token, request: [u8; 8]) -> Handshake {
+        (self.request, self.sent) = (request, 0);
+        Handshake::Ack(Packet::EMPTY)
+    }
+
+    fn out_transaction(&mut self, _token: Token, _data: &[u8]) -> Handshake {
+        Handshake::Ack(Packet::EMPTY)
+    }
+
+    fn in_transaction(&mut self, token: Token) -> Handshake {
+        if let Some(script) = &mut self.then {
+            return script.next();
+        }
+        if token.endpoint != 0 {
+            return Handshake::Nak;
+        }
+        let asked = usize::from(u16::from_le_bytes([self.request[6], self.request[7]]));
+        let answer = self.answer();
+        let rest = &answer[self.sent..asked.min(answer.len())];
+        let part = &rest[..rest.len().min(MAX_PACKET)];
+        self.sent += part.len();
+        Handshake::Ack(Packet::new(part).expect("it fits"))
+    }
+}
+
 /// Bytes that often look like descriptors: a small length, a known type.
 fn descriptor_like() -> impl Strategy<Value = Vec<u8>> {
     let descriptor = (0..12_u8, 0..7_u8, prop::collection::vec(any::<u8>(), 0..10))
@@ -76,28 +127,41 @@ proptest! {
         let _ = ConfigurationDescriptor::parse_total_length(&bytes);
         let _ = parse_first_language(&bytes);
         let _ = parse_string(&bytes);
-        if let Ok(configuration) = ConfigurationDescriptor::parse(&bytes)
-            && let Ok(function) = configuration.serial_function()
-        {
-            prop_assert!(function.bulk_in.max_packet <= 64);
-            prop_assert!(function.bulk_out.max_packet >= 1);
-        }
+        let _ = ConfigurationDescriptor::parse(&bytes);
     }
 
     #[test]
     fn any_answers_end_the_enumeration(answers in prop::collection::vec(answer(), 1..20)) {
         let mut device = Script { answers, at: 0 };
-        if let Ok(mut host) = CdcHost::enumerate(&mut device, &mut |_| ()) {
-            let _ = host.frame(&mut device, &mut |_| ());
+        let _ = CdcHost::enumerate(&mut device, &mut |_| ());
+    }
+
+    #[test]
+    fn a_serial_port_may_turn_hostile(answers in prop::collection::vec(answer(), 1..20)) {
+        let mut device = Turned { request: [0; 8], sent: 0, then: None };
+        let mut host = CdcHost::enumerate(&mut device, &mut |_| ()).expect("a serial port");
+        device.then = Some(Script { answers, at: 0 });
+        for _ in 0..5 {
+            host.queue(b"anything");
+            if host.frame(&mut device, &mut |_| ()).is_err() {
+                break;
+            }
         }
+        let traffic = host.traffic();
+        prop_assert!(host.read_all().len() as u64 <= traffic.bytes_in);
+        prop_assert!(traffic.bytes_in <= 64 * traffic.packets_in, "{traffic:?}");
     }
 
     #[test]
     fn a_good_configuration_with_one_wrong_byte(at in 0..67_usize, value: u8) {
         let mut bytes = SERIAL_CONFIGURATION;
         bytes[at] = value;
-        if let Ok(configuration) = ConfigurationDescriptor::parse(&bytes) {
-            let _ = configuration.serial_function();
+        if let Ok(configuration) = ConfigurationDescriptor::parse(&bytes)
+            && let Ok(function) = configuration.serial_function()
+        {
+            for pipe in [function.bulk_in, function.bulk_out] {
+                prop_assert!((1..=64).contains(&pipe.max_packet), "{pipe:?}");
+            }
         }
     }
 }

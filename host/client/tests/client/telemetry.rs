@@ -28,7 +28,10 @@ fn nothing_is_streamed_to_a_client_that_has_ended_its_telemetry() {
     client.end_telemetry();
     // What was under way.
     blocks_for(&mut client, ms(20));
+    let unasked = client.tally().unasked_blocks;
     assert!(blocks_for(&mut client, ms(50)).is_empty());
+    // The device sends none: it is not the client that drops them.
+    assert_eq!(client.tally().unasked_blocks, unasked);
 }
 
 #[test]

@@ -34,7 +34,7 @@ pub fn device() -> (Shared, Port) {
     (device, port)
 }
 
-/// A client that always has the same session, and whose numbers wrap soon.
+/// A client that always has the same session, and whose numbers pass 65,535 soon.
 pub fn client(port: Port, session: u32) -> Client<Port> {
     Client::connect_with(port, options(session)).unwrap()
 }

@@ -31,6 +31,10 @@ fn numbers_below_a_limit_are_equally_likely() {
         "{counts:?}"
     );
     assert_eq!((random.below(1), random.below(0)), (0, 0));
+    // A third; half of them if the last, incomplete block came a second time.
+    let low = (0..10_000).filter(|_| random.below(3 << 62) < 1 << 62);
+    let low = low.count();
+    assert!(low.abs_diff(3_333) < 300, "{low}");
     // Half of all numbers are rejected here.
     assert!(random.below((1 << 63) + 1) <= 1 << 63);
 }

@@ -181,7 +181,7 @@ fn the_plug_can_be_pulled_twenty_times() {
 }
 
 #[test]
-fn pins_that_are_not_its_own_and_a_wrong_clock_are_no_device() {
+fn pins_that_are_not_its_own_are_no_device() {
     let Some(mut pair) = plugged_in() else { return };
     let mcu = pair.boards_mut().comms_mut().mcu_mut();
     assert!(mcu.is_connected());
@@ -197,10 +197,9 @@ fn pins_that_are_not_its_own_and_a_wrong_clock_are_no_device() {
     assert!(!mcu.is_connected());
 }
 
-/// Every length up to some packets arrives whole and at once, whether it ends with
-/// a full packet or not.
+/// Blocks arrive each millisecond, and a reply of several packets beside them at once.
 #[test]
-fn frames_of_every_length_around_a_packet_arrive() {
+fn blocks_and_replies_arrive_at_once() {
     let Some(mut host) = connected() else { return };
     let before = host.transport_mut().pair.traffic();
     host.subscribe().expect("a subscription");
@@ -210,7 +209,6 @@ fn frames_of_every_length_around_a_packet_arrive() {
     let packets = after.packets_in - before.packets_in;
     let bytes = after.bytes_in - before.bytes_in;
     println!("{packets} packets, {bytes} bytes in 60 ms");
-    assert!(packets * 64 >= bytes);
     let mut worst = Duration::ZERO;
     for _ in 0..20 {
         let begin = host.now();

@@ -179,10 +179,11 @@ fn shake<F: Real>(
         walk.advance(&mut plant);
         row.clear();
         plant.write(&mut row);
-        let [acceleration, excursion, current] =
-            places.map(|place| place.and_then(|place| row.get(place)).copied());
+        let values = places.map(|place| place.and_then(|place| row.get(place)).copied());
         let torque_nm = shown.torque_nm.to_f64();
-        if !(torque_nm.is_finite() && plant.shaft().angle_rad.is_finite()) {
+        // A criterion of what is not there would hold of nothing.
+        let is_complete = values.iter().all(Option::is_some);
+        if !(is_complete && torque_nm.is_finite() && plant.shaft().angle_rad.is_finite()) {
             seen.overflow_s.get_or_insert(now_s);
             break;
         }
@@ -192,7 +193,7 @@ fn shake<F: Real>(
         seen.last_torque_nm = torque_nm;
         watched.add(
             now_s,
-            [acceleration, excursion, current].map(|value| value.unwrap_or(0.0)),
+            values.map(|value| value.unwrap_or(0.0)),
             coil_v,
             plant.shaft().omega_rad_s,
         );

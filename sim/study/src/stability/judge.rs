@@ -15,6 +15,9 @@ use crepitus_scene::scene::Precision;
 /// Factor of the cycle rate beyond which it is another motion.
 const ANOTHER_MOTION: f64 = 2.0;
 
+/// Nothing is right of what was not looked at.
+const NO_TORQUE: Failure = Failure::Broken("there is no torque from then on");
+
 /// Observations for a criterion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Evidence<'a> {
@@ -251,6 +254,9 @@ fn of_symptoms(criterion: &Criterion, seen: &Observation, precision: Precision) 
         }
         Criterion::TorqueQuiet { most_nm, .. } => {
             let range = seen.late_torque;
+            if range.is_empty() {
+                return Finding::Failed(NO_TORQUE, None);
+            }
             number(range.high - range.low, *most_nm, "N·m")
         }
         Criterion::SpringsReturn { most } => number(of.returned, *most, ""),
@@ -309,6 +315,9 @@ fn torques(criterion: &Criterion, seen: &Observation, precision: Precision) -> F
             ..
         } => {
             let range = seen.late_torque;
+            if range.is_empty() {
+                return Finding::Failed(NO_TORQUE, None);
+            }
             let outside = (range.high - high_nm).max(low_nm - range.low).max(0.0);
             number(outside, *slack_nm, "N·m")
         }

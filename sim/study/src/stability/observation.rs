@@ -136,6 +136,10 @@ impl Range {
         self.low = self.low.min(x);
         self.high = self.high.max(x);
     }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.low > self.high
+    }
 }
 
 impl Default for Range {

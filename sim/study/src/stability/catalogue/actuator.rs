@@ -268,7 +268,8 @@ pub(super) fn hot_coil() -> Case {
                 duration_s: 8.0,
                 ..NOMINAL
             };
-            trials(subject, [(run, vec![late(Measure::CurrentRms, 5.0, 0.13)])])
+            let bounds = within(Measure::CurrentRms, Some(5.0), 0.05, 0.13);
+            trials(subject, [(run, vec![bounds])])
         },
     )
 }
