@@ -257,7 +257,7 @@ impl Comms {
         };
         let commit = self
             .parameters
-            .to_send(self.drive.revision(self.now_ms))
+            .to_send(self.drive.revision(self.now_ms, self.start))
             .filter(|_| self.drive.is_present(self.now_ms));
         let wanted = Wanted {
             commit,

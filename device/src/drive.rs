@@ -187,16 +187,16 @@ impl Drive {
             return;
         }
         let mut gathered = Reassembly::default();
-        let Some(revision) = self.commits.take_into(&mut gathered) else {
+        let Some(taken) = self.commits.take_into(&mut gathered) else {
             return;
         };
         let Some(values) = Commits::verified(&gathered, &self.counters) else {
             return;
         };
         let is_live = self.command.safety().is_live();
-        let result = self.preparation.prepare(revision, &values, is_live);
+        let result = self.preparation.prepare(taken.0, &values, is_live);
         let done = result.as_ref().map(|_| ()).map_err(|error| *error);
-        self.commits.done(revision, done, &self.counters);
+        self.commits.done(taken, done, &self.counters);
         if let Ok(prepared) = result {
             self.prepared = Some(prepared);
             self.exchange.plan_stored();

@@ -35,8 +35,8 @@ pub enum ToDrive {
     Commit {
         /// Revision of the commit.
         revision: Revision,
-        /// Checksum over all values of the commit.
-        checksum: u32,
+        /// Seal over all values of the commit, of this start of comms.
+        seal: u32,
         /// How many pieces are sent; what is in none is at its default.
         pieces: u8,
         /// Some of the values.
@@ -144,7 +144,7 @@ pub struct DriveStatus {
     pub fault: u8,
     /// Code of the fault of the vibration actuator's coil, 0 for none.
     pub coil_fault: u8,
-    /// Active revision of the parameters.
+    /// Active revision of the parameters, if it is of this boot of comms.
     pub revision: Revision,
     /// The last rejected commit, and the reason.
     pub refused: Option<(Revision, ValueError)>,

@@ -2,10 +2,13 @@
 //!
 //! A long frame would delay heartbeats, and there are many parameters, most of
 //! which are at their defaults. So a frame on the link carries at most
-//! [`PIECE_VALUES`] values, the revision, and a checksum over all values; and only
+//! [`PIECE_VALUES`] values, the revision, and a seal over all values; and only
 //! the pieces that have values of their own are sent. Both sides know the defaults:
 //! they are part of the schema. The receiver applies a commit only when as many
-//! pieces are there as were announced and the checksum is valid.
+//! pieces are there as were announced and the seal is valid.
+//!
+//! Revisions begin anew with comms, at the one that was saved. So the seal is another for each
+//! start of comms, and no piece of before a restart is taken for one of after it.
 
 use crate::frame::CRC;
 use crate::parameters::{DEFAULTS, PARAMETER_COUNT};
@@ -64,8 +67,14 @@ pub fn to_send(values: &[f64; PARAMETER_COUNT]) -> u32 {
     pieces
 }
 
-/// Checksum over all values of a commit: CRC-32 of their bytes, little endian.
-pub fn checksum(values: &[f64]) -> u32 {
+/// Seal over all values of a commit, of this start of comms: CRC-32 of their bytes, little
+/// endian, XOR the start times 0x9e3779b1.
+pub fn seal(values: &[f64], comms_start: u16) -> u32 {
+    // Odd: each start has its own.
+    checksum(values) ^ u32::from(comms_start).wrapping_mul(0x9e37_79b1)
+}
+
+fn checksum(values: &[f64]) -> u32 {
     let mut digest = CRC.digest();
     for value in values {
         digest.update(&value.to_le_bytes());
@@ -76,7 +85,9 @@ pub fn checksum(values: &[f64]) -> u32 {
 /// Reassembly of a commit from pieces in any order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reassembly {
-    checksum: u32,
+    seal: u32,
+    /// The start of comms that the seal has to be of.
+    comms_start: u16,
     /// Those of the pieces that have arrived; the others are at their defaults.
     values: [f64; PARAMETER_COUNT],
     /// How many pieces there are.
@@ -87,15 +98,17 @@ pub struct Reassembly {
 
 impl Default for Reassembly {
     fn default() -> Self {
-        Self::new(0, 0)
+        Self::new(0, 0, 0)
     }
 }
 
 impl Reassembly {
-    /// Starts without pieces, for so many of them, and values with this checksum.
-    pub fn new(checksum: u32, count: u8) -> Self {
+    /// Starts without pieces, for so many of them, and values with this seal of this start of
+    /// comms.
+    pub fn new(seal: u32, comms_start: u16, count: u8) -> Self {
         Self {
-            checksum,
+            seal,
+            comms_start,
             values: [0.0; PARAMETER_COUNT],
             count,
             arrived: 0,
@@ -104,13 +117,14 @@ impl Reassembly {
 
     /// Starts again. What was there stays until its piece arrives, and counts for nothing:
     /// to clear it would take as long as a quarter of the drive's tick.
-    pub fn restart(&mut self, checksum: u32, count: u8) {
-        (self.checksum, self.count, self.arrived) = (checksum, count, 0);
+    pub fn restart(&mut self, seal: u32, comms_start: u16, count: u8) {
+        (self.seal, self.comms_start) = (seal, comms_start);
+        (self.count, self.arrived) = (count, 0);
     }
 
-    /// The expected checksum of all values.
-    pub fn checksum(&self) -> u32 {
-        self.checksum
+    /// The expected seal of all values.
+    pub fn seal(&self) -> u32 {
+        self.seal
     }
 
     /// Adds a piece; ignores an invalid index.
@@ -130,7 +144,7 @@ impl Reassembly {
         self.arrived.count_ones() == u32::from(self.count)
     }
 
-    /// The values, if complete and with a valid checksum. This takes long.
+    /// The values, if complete and with a valid seal. This takes long.
     pub fn values(&self) -> Option<[f64; PARAMETER_COUNT]> {
         if !self.is_complete() {
             return None;
@@ -146,7 +160,7 @@ impl Reassembly {
                 *value = *given;
             }
         }
-        (checksum(&values) == self.checksum).then_some(values)
+        (seal(&values, self.comms_start) == self.seal).then_some(values)
     }
 }
 
@@ -186,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_piece_with_an_invalid_index_is_ignored() {
-        let mut reassembly = Reassembly::new(0, 1);
+        let mut reassembly = Reassembly::new(0, 0, 1);
         for index in [31, 32, 255] {
             let before = reassembly;
             reassembly.add(&Piece {
@@ -214,7 +228,7 @@ mod tests {
             let turn = order.index(sent.len());
             sent.rotate_left(turn);
             let bits = values.map(f64::to_bits);
-            let mut reassembly = Reassembly::new(checksum(&values), count(&values));
+            let mut reassembly = Reassembly::new(seal(&values, 7), 7, count(&values));
             for piece in &sent {
                 prop_assert_eq!(reassembly.values(), None);
                 reassembly.add(piece);
@@ -225,12 +239,12 @@ mod tests {
 
             // The next commit takes nothing of this one.
             let next = Values::default().0;
-            reassembly.restart(checksum(&next), 1);
+            reassembly.restart(seal(&next, 7), 7, 1);
             prop_assert_eq!(reassembly.values(), None);
             reassembly.add(&Piece::of(&next, 0).unwrap());
             prop_assert_eq!(reassembly.values(), Some(next));
 
-            reassembly.restart(checksum(&values), count(&values));
+            reassembly.restart(seal(&values, 7), 7, count(&values));
             let wrong = wrong.index(sent.len());
             for (n, piece) in sent.iter().enumerate() {
                 let mut piece = *piece;

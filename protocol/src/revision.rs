@@ -6,19 +6,24 @@ use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 /// Revision of the parameters, incremented by every commit. 0 is a drive
-/// without parameters.
+/// without parameters that comms knows of.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
 )]
 pub struct Revision(pub u32);
 
 impl Revision {
-    /// No parameters received yet.
+    /// No parameters received yet since comms has started.
     pub const NONE: Self = Self(0);
 
     /// The next revision; never [`Self::NONE`].
     pub fn next(self) -> Self {
         Self(self.0.checked_add(1).unwrap_or(1))
+    }
+
+    /// Whether it comes before another, also where they wrap. [`Self::NONE`] has no place.
+    pub fn is_before(self, other: Self) -> bool {
+        self.0.wrapping_sub(other.0).cast_signed() < 0
     }
 }
 
@@ -60,5 +65,8 @@ mod tests {
     fn a_revision_that_wraps_is_not_none() {
         assert_eq!(Revision(7).next(), Revision(8));
         assert_eq!(Revision(u32::MAX).next(), Revision(1));
+        assert!(Revision(u32::MAX).is_before(Revision(1)));
+        assert!(!Revision(1).is_before(Revision(u32::MAX)));
+        assert!(!Revision(7).is_before(Revision(7)));
     }
 }

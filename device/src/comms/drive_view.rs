@@ -128,11 +128,17 @@ impl DriveView {
         self.status.is_some_and(|status| status.awaits_comms)
     }
 
-    /// The active parameters, if the drive is present and has reported them.
-    pub fn revision(&self, now_ms: u64) -> Option<Revision> {
-        self.status
-            .filter(|_| self.is_present(now_ms))
-            .map(|status| status.revision)
+    /// The active parameters, if the drive is present and has reported anything.
+    pub fn revision(&self, now_ms: u64, start: u16) -> Option<Revision> {
+        self.status.filter(|_| self.is_present(now_ms))?;
+        Some(self.known_revision(start))
+    }
+
+    /// The active parameters. None where it has not yet reported any of this boot of comms, with
+    /// whose revisions they begin anew.
+    pub fn known_revision(&self, start: u16) -> Revision {
+        self.status_since(start)
+            .map_or(Revision::NONE, |status| status.revision)
     }
 
     /// The commit that the drive has rejected since this boot of comms.
@@ -209,13 +215,17 @@ mod tests {
             tick: 5_030,
             start: 1,
             revision: Revision(3),
+            comms_start: Some(9),
             ..DriveStatus::default()
         };
+        assert_eq!(view.revision(1, 9), None);
         view.receive_status(&status);
         assert_eq!(
-            (view.seen_tick(), view.revision(1)),
+            (view.seen_tick(), view.revision(1, 9)),
             (5_030, Some(Revision(3)))
         );
+        // Another start of comms has numbers of its own.
+        assert_eq!(view.revision(1, 10), Some(Revision::NONE));
         assert_eq!(
             view.receive_block(&block(0, 0, 2), 3),
             Continuity::Restarted
@@ -223,7 +233,7 @@ mod tests {
         assert_eq!(view.identity(), None);
         view.receive_status(&status);
         assert_eq!(
-            (view.seen_tick(), view.revision(3)),
+            (view.seen_tick(), view.revision(3, 9)),
             (20, None),
             "of another life"
         );

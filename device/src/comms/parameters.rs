@@ -91,8 +91,11 @@ impl Parameters {
         self.pending = None;
     }
 
-    /// Gives the committed values a new revision, to send them again.
-    pub fn renumber(&mut self) {
+    /// Gives the committed values a new revision, newer than that of the drive, to send them again.
+    pub fn renumber(&mut self, active: Revision) {
+        if self.latest.is_before(active) {
+            self.latest = active;
+        }
         self.latest = self.latest.next();
         self.revision = self.latest;
     }
@@ -154,6 +157,16 @@ mod tests {
         assert!(parameters.to_send(Some(Revision::NONE)).is_some());
         assert!(parameters.to_send(Some(Revision(1))).is_none());
         assert!(parameters.to_send(None).is_none(), "nobody is there");
+    }
+
+    #[test]
+    fn values_that_are_sent_again_are_newer_than_what_the_drive_has() {
+        let mut parameters = Parameters::new(None);
+        parameters.renumber(Revision(1));
+        assert_eq!(parameters.revision(), Revision(2));
+        parameters.renumber(Revision(9));
+        assert_eq!(parameters.revision(), Revision(10));
+        assert!(parameters.to_send(Some(Revision(9))).is_some());
     }
 
     #[test]

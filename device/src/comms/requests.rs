@@ -164,7 +164,7 @@ impl Comms {
         if base != revision {
             return Err(Refusal::Stale { revision });
         }
-        match self.drive.revision(self.now_ms) {
+        match self.drive.revision(self.now_ms, self.start) {
             None => return Err(Refusal::DriveSilent),
             // The previous commit is still being sent.
             Some(active) if active != revision => return Err(Refusal::Busy),
@@ -260,7 +260,7 @@ impl Comms {
         if self.reboot_ms.is_some() || !is_at_rest || self.drive.identity().is_none() {
             return Err(Refusal::Busy);
         }
-        if self.drive.revision(self.now_ms) != Some(self.parameters.revision()) {
+        if self.drive.revision(self.now_ms, self.start) != Some(self.parameters.revision()) {
             return Err(Refusal::Busy);
         }
         let seen_tick = self.drive.seen_tick();
@@ -306,13 +306,17 @@ impl Comms {
         }
     }
 
-    /// Reissues the committed values under a new revision after the drive has
-    /// rejected them: it never accepts a rejected revision. This happens when an
-    /// unconfirmed commit turns out to be rejected because the drive was armed.
+    /// Reissues the committed values under a new revision where the drive accepts theirs no more:
+    /// it has rejected it, because it was armed, or a newer one is in force after all, which
+    /// was rejected before the drive restarted and has waited on the link.
     fn reissue_rejected(&mut self) {
+        let revision = self.parameters.revision();
         let refused = self.drive.refused(self.start);
-        if refused.is_some_and(|(refused, _)| refused == self.parameters.revision()) {
-            self.parameters.renumber();
+        let is_refused = refused.is_some_and(|(refused, _)| refused == revision);
+        let active = self.drive.revision(self.now_ms, self.start);
+        let active = active.filter(|active| *active != Revision::NONE);
+        if is_refused || active.is_some_and(|active| revision.is_before(active)) {
+            self.parameters.renumber(active.unwrap_or(revision));
         }
     }
 
@@ -350,7 +354,7 @@ impl Comms {
                 }
             }
             JobState::Commit { revision } => {
-                if self.drive.revision(self.now_ms) == Some(revision) {
+                if self.drive.revision(self.now_ms, self.start) == Some(revision) {
                     self.parameters.accept();
                     return Some(Ok(Answer::Committed { revision }));
                 }
@@ -451,7 +455,7 @@ impl Comms {
             tick: self.drive.seen_tick(),
             uptime_ms: self.now_ms,
             revision: self.parameters.revision(),
-            in_force: drive.revision,
+            in_force: self.drive.known_revision(self.start),
             saved: self.parameters.saved(),
             lease: self.lease.holder(self.now_ms),
             zeroed: drive.zeroed,

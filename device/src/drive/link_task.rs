@@ -117,20 +117,19 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
                         .safety_mut()
                         .receive_heartbeat(now, heartbeat, counters)
                 });
-                if freshness == Freshness::Restarted {
+                if freshness == Freshness::Started {
                     self.link.clear();
-                    shared.commits(Commits::clear);
+                    shared.commits(|commits| commits.restart(heartbeat.start));
                 }
             }
             ToDrive::Commit {
                 revision,
-                checksum,
+                seal,
                 pieces,
                 piece,
             } => {
-                let active = shared.command(|command| command.revision());
                 let is_decided = shared.commits(|commits| {
-                    commits.receive(*revision, (*checksum, *pieces), piece, active, counters)
+                    commits.receive(*revision, (*seal, *pieces), piece, counters)
                 });
                 if is_decided {
                     self.link.request_status();
@@ -295,6 +294,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             *polarity_proven = safety.polarity_proven();
             *awaits_comms = safety.awaits_comms();
         });
+        *revision = shared.commits(|commits| commits.known(*revision));
         counters.read(counts);
     }
 
@@ -423,13 +423,13 @@ mod tests {
         assert_eq!(bench.statuses(40).len(), 0);
         let why = ValueError::NeedsDisarmed { id: 6 };
         let commits = &mut bench.parts.commits;
-        commits.done(Revision(3), Err(why), &bench.counters);
+        commits.done((Revision(3), 0), Err(why), &bench.counters);
         let [status] = bench.statuses(40)[..] else {
             panic!("one status");
         };
         assert_eq!(status.refused, Some((Revision(3), why)));
         assert_eq!(bench.statuses(40).len(), 0);
-        bench.parts.commits.clear();
+        bench.parts.commits.restart(1);
         let [status] = bench.statuses(40)[..] else {
             panic!("one status");
         };
@@ -450,6 +450,10 @@ mod tests {
         bench.task = LinkTask::new(boot.identity, boot.start);
         bench.parts.command = Command::new(&first.motor, &plan, &boot);
         bench.parts.command.zero().unwrap();
+        bench
+            .parts
+            .commits
+            .done((Revision(7), 0), Ok(()), &bench.counters);
         bench.counters.count(DriveCounter::Foreign);
         let [status] = bench.statuses(40)[..] else {
             panic!("one status");

@@ -137,7 +137,7 @@ impl Safety {
             return freshness;
         }
         counters.count(DriveCounter::Heartbeats);
-        if freshness == Freshness::Restarted && self.is_live() {
+        if freshness == Freshness::Started && self.is_live() {
             self.fail(Fault::CommsRestarted, counters);
         }
         if !heartbeat.enable {

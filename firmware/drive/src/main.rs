@@ -299,7 +299,7 @@ mod app {
         let mut gathered = Reassembly::default();
         loop {
             if !cx.shared.exchange.is_busy()
-                && let Some(revision) = cx
+                && let Some(taken) = cx
                     .shared
                     .commits
                     .lock(|commits| commits.take_into(&mut gathered))
@@ -309,12 +309,12 @@ mod app {
                     .shared
                     .command
                     .lock(|part| part.command.safety().is_live());
-                let result = cx.local.preparation.prepare(revision, &values, is_live);
+                let result = cx.local.preparation.prepare(taken.0, &values, is_live);
                 let done = result.as_ref().map(|_| ()).map_err(|error| *error);
                 let counters = cx.shared.counters;
                 cx.shared
                     .commits
-                    .lock(|commits| commits.done(revision, done, counters));
+                    .lock(|commits| commits.done(taken, done, counters));
                 if let Ok(prepared) = result {
                     let (rendering, command) = (prepared.rendering, prepared.command);
                     cx.shared

@@ -93,6 +93,7 @@ fn session_at(place: u32) -> Session {
 )]
 struct Bench {
     comms: Comms,
+    start: u16,
     now_ms: u64,
     line_is_on: bool,
     drive: DriveModel,
@@ -128,6 +129,7 @@ impl Bench {
     fn new(boot: &Boot) -> Self {
         let comms = Comms::new(boot);
         Self {
+            start: boot.start,
             now_ms: 0,
             line_is_on: false,
             drive: DriveModel::new(boot.start),
@@ -471,6 +473,11 @@ impl Bench {
         if now == self.revision {
             return;
         }
+        // One that the drive would take for old is given the next after what it has in force.
+        if self.drive.is_overtaken_by(now) {
+            self.revision = now;
+            return;
+        }
         // Commits that were refused had numbers, too; and what the drive has
         // refused after it was taken for committed is given another.
         let mut next = self.revision;
@@ -521,10 +528,8 @@ impl Bench {
                 assert!(end.is_none_or(|end| heartbeat.seen_tick + left < end));
                 assert!(!heartbeat.enable || self.lease.is_wanted());
             }
-            ToDrive::Commit {
-                checksum, piece, ..
-            } => {
-                let source = self.values.by_checksum(*checksum);
+            ToDrive::Commit { seal, piece, .. } => {
+                let source = self.values.by_seal(*seal, self.start);
                 let source = source.expect("valid values of a host");
                 assert_eq!(Piece::of(&source.0, piece.index), Some(*piece));
             }

@@ -15,7 +15,7 @@ use crepitus_protocol::telemetry::{
     BLOCK_SAMPLES, BLOCK_TICKS, Block, BlockFlags, NO_CURRENT, Sample, SampleFlags,
 };
 use crepitus_protocol::{Decoder, Lane, Revision, State, ValueError, schema};
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 /// Ticks stay within two months, the range of a drive.
 const MOST_TICK: u64 = 1 << 37;
@@ -57,6 +57,8 @@ pub(crate) struct DriveModel {
     /// The latest tick that it has reported since.
     latest_tick: u64,
     reassembly: (Revision, Reassembly),
+    /// What it has reported to be in force.
+    revisions: BTreeSet<u32>,
     /// The part of its post-mortem record that it was asked for.
     crash_part: Option<u8>,
     /// A block was sent before its millisecond.
@@ -84,7 +86,8 @@ impl DriveModel {
             has_restarted: false,
             restarts: 0,
             latest_tick: 0,
-            reassembly: (Revision::NONE, Reassembly::new(0, 0)),
+            reassembly: (Revision::NONE, Reassembly::new(0, 0, 0)),
+            revisions: BTreeSet::new(),
             crash_part: None,
             is_ahead: false,
             arming: None,
@@ -104,6 +107,12 @@ impl DriveModel {
     /// Whether it has rejected a commit since the last call.
     pub(crate) fn has_rejected(&mut self) -> bool {
         std::mem::take(&mut self.has_rejected)
+    }
+
+    /// Whether this is the next one after a revision that it has reported to be in force.
+    pub(crate) fn is_overtaken_by(&self, revision: Revision) -> bool {
+        let before = |reported: &u32| Revision(*reported).next() == revision;
+        self.revisions.iter().any(before)
     }
 
     /// True if its ticks have restarted since the last call.
@@ -138,12 +147,13 @@ impl DriveModel {
             }
             ToDrive::Commit {
                 revision,
-                checksum,
+                seal,
                 pieces,
                 piece,
             } => {
-                if self.reassembly.0 != revision || self.reassembly.1.checksum() != checksum {
-                    self.reassembly = (revision, Reassembly::new(checksum, pieces));
+                if self.reassembly.0 != revision || self.reassembly.1.seal() != seal {
+                    let reassembly = Reassembly::new(seal, self.comms_start, pieces);
+                    self.reassembly = (revision, reassembly);
                 }
                 self.reassembly.1.add(&piece);
                 if self.reassembly.1.values().is_some() {
@@ -304,6 +314,7 @@ impl DriveModel {
     fn status(&mut self) -> Frame {
         (self.reported, self.reported_ms) = (self.status, 0);
         self.latest_tick = self.latest_tick.max(self.status.tick);
+        self.revisions.insert(self.status.revision.0);
         let message = FromDrive::Status(self.status);
         frame::encode(Lane::FromDrive, &message).expect("every message fits")
     }

@@ -7,7 +7,8 @@ pub(crate) struct KnownValues(Vec<Known>);
 
 struct Known {
     values: Values,
-    checksum: u32,
+    /// Of any start of comms: 0.
+    seal: u32,
     is_valid: bool,
 }
 
@@ -26,16 +27,16 @@ impl KnownValues {
     pub(crate) fn add(&mut self, values: &Values) {
         self.0.push(Known {
             values: *values,
-            checksum: pieces::checksum(&values.0),
+            seal: pieces::seal(&values.0, 0),
             is_valid: DeviceSettings::of(values).is_ok(),
         });
     }
 
     /// They were refused: forgets them once.
     pub(crate) fn withdraw(&mut self, values: &Values) {
-        let checksum = pieces::checksum(&values.0);
+        let seal = pieces::seal(&values.0, 0);
         // The newest; there may be the same from before.
-        if let Some(place) = self.0.iter().rposition(|known| known.checksum == checksum) {
+        if let Some(place) = self.0.iter().rposition(|known| known.seal == seal) {
             self.0.remove(place);
         }
     }
@@ -45,10 +46,11 @@ impl KnownValues {
         self.valid().any(|known| known.values == *values)
     }
 
-    /// The valid set with this checksum.
-    pub(crate) fn by_checksum(&self, checksum: u32) -> Option<&Values> {
+    /// The valid set with this seal of a start of comms.
+    pub(crate) fn by_seal(&self, seal: u32, comms_start: u16) -> Option<&Values> {
+        let empty = pieces::seal(&[], comms_start) ^ pieces::seal(&[], 0);
         self.valid()
-            .find(|known| known.checksum == checksum)
+            .find(|known| known.seal ^ empty == seal)
             .map(|known| &known.values)
     }
 

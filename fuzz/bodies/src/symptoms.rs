@@ -4,7 +4,7 @@
 //! - every symptom's torque is finite and at most what its settings allow, or no more
 //!   than it was before they were in force;
 //! - while the leg rests, no torque of a play grows; after a commit only to what motion
-//!   has earned since it was switched on, within the slew limit;
+//!   has earned since it was switched on, within twice the slew limit;
 //! - what gives energy gives no more than its tank holds;
 //! - while the motor is not driven there is no torque;
 //! - words are within the tick and in order for each symptom, and bounded in number.
@@ -331,7 +331,8 @@ impl<F: Real> Knee<F> {
             };
             let is_play = !self.was_active[place] && !self.was_elastic[place];
             if moved_rad == 0.0 && is_play {
-                let settles_nm = (was_nm.abs() + SLEW_NM).min(self.earned_nm[place]);
+                // Of two ends one may let go, and what fades besides it.
+                let settles_nm = (was_nm.abs() + 2.0 * SLEW_NM).min(self.earned_nm[place]);
                 assert!(
                     nm.abs() <= settles_nm.max(was_nm.abs()) + rounding_nm,
                     "{name} pushes a leg that rests: from {was_nm} to {nm} N·m"

@@ -427,7 +427,7 @@ fn to_drive() -> Vec<Example> {
         }),
         ToDrive::Commit {
             revision: Revision(301),
-            checksum: pieces::checksum(&values().0),
+            seal: pieces::seal(&values().0, 7),
             pieces: 9,
             piece: Piece::of(&values().0, 1).expect("more values than one piece has"),
         },

@@ -139,9 +139,9 @@ fn check(client: &mut Client<Line>, checks: &mut Vec<Check>) -> Result<(), crepi
         wrong(
             "parameters",
             format!(
-                "the drive applies revision {}, but revision {} was committed: check the link between \
-                 the controllers",
-                status.in_force, status.revision
+                "the drive has not applied revision {}, which was committed: check the link between the \
+                 controllers",
+                status.revision
             ),
         )
     });

@@ -7,6 +7,7 @@ use crate::line::{Line, failure, manage};
 use clap::Args;
 use crepitus_client::{Client, Error, Handshake};
 use crepitus_connection::device_text;
+use crepitus_protocol::Revision;
 use crepitus_protocol::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
 use crepitus_protocol::crash::Controller;
 use crepitus_protocol::host::{Counters, Status};
@@ -118,10 +119,10 @@ fn status_text(status: &Status) -> String {
         text,
         "params  revision {}, {}, {saved}",
         status.revision,
-        if status.in_force == status.revision {
-            "applied by the drive".to_owned()
-        } else {
-            format!("the drive still applies {}", status.in_force)
+        match status.in_force {
+            applied if applied == status.revision => "applied by the drive".to_owned(),
+            Revision::NONE => "which the drive has not got yet".to_owned(),
+            applied => format!("the drive still applies {applied}"),
         }
     );
     let _ = writeln!(

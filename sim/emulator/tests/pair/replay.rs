@@ -168,8 +168,8 @@ fn renewals_of_before_do_not_renew() {
         }
     }
     assert!(!is_driven, "kept on by renewals of another session");
+    host.transport_mut().wait(Duration::from_millis(20));
     let fault = host.status().expect("a status").drive_fault;
     assert_eq!(fault, Fault::LeaseExpired.code());
-    host.transport_mut().wait(Duration::from_millis(20));
     assert!(!boards(&mut host).comms().line_is_on());
 }
