@@ -2,9 +2,11 @@
 
 use ratatui::{DefaultTerminal, Frame};
 use std::io;
+use std::mem::ManuallyDrop;
 
-/// The terminal's other screen, in raw mode.
-pub(super) struct Screen(DefaultTerminal);
+/// The terminal's other screen, in raw mode. Its own drop, and `ratatui::restore`, would print that
+/// the terminal is gone, to it, which panics.
+pub(super) struct Screen(ManuallyDrop<DefaultTerminal>);
 
 impl Screen {
     /// Takes the terminal. A panic restores it, too.
@@ -12,7 +14,7 @@ impl Screen {
     /// # Errors
     /// It cannot be used.
     pub(super) fn take() -> io::Result<Self> {
-        ratatui::try_init().map(Self)
+        ratatui::try_init().map(ManuallyDrop::new).map(Self)
     }
 
     /// Draws a picture.
@@ -26,7 +28,7 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        // Not `restore`, which would print that the terminal is gone, to it.
+        let _ = self.0.show_cursor();
         let _ = ratatui::try_restore();
     }
 }
