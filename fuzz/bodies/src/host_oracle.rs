@@ -27,6 +27,9 @@ pub(crate) struct HostOracle {
     open: BTreeSet<u32>,
     /// Which request of each session was a subscription; the last one counts.
     subscriptions: BTreeMap<u32, u32>,
+    /// Start and ticks of the blocks that have come since, first and next: a reply may come after
+    /// them, if it is the second one.
+    waiting: BTreeMap<u32, Vec<(u8, u64, u64)>>,
     /// Of each session, also of one that has unsubscribed: the count is one for
     /// all.
     accountings: BTreeMap<u32, SampleAccounting>,
@@ -40,6 +43,7 @@ impl HostOracle {
             Operation::Renew => return,
             Operation::Subscribe => {
                 self.subscriptions.insert(key.0, request.number);
+                self.waiting.insert(key.0, Vec::new());
                 self.accountings.remove(&key.0);
             }
             _ => {}
@@ -74,6 +78,7 @@ impl HostOracle {
     /// The connection was lost, with the bytes in flight.
     pub(crate) fn cut(&mut self) {
         self.subscriptions.clear();
+        self.waiting.clear();
         self.accountings.clear();
     }
 
@@ -101,12 +106,16 @@ impl HostOracle {
                 start,
             }) if self.subscriptions.get(&reply.session.0) == Some(&reply.number) => {
                 self.subscriptions.remove(&reply.session.0);
+                let waiting = self.waiting.remove(&reply.session.0).unwrap_or_default();
+                let came = waiting
+                    .iter()
+                    .filter(|(of, first, _)| *of == start && *first >= first_tick);
                 let accounting = SampleAccounting {
                     first_tick,
                     dropped_before: dropped,
-                    received: 0,
+                    received: came.clone().count() as u64 * BLOCK_SAMPLES as u64,
                     start,
-                    next_tick: 0,
+                    next_tick: came.map(|(_, _, next)| *next).max().unwrap_or(0),
                 };
                 self.accountings.insert(reply.session.0, accounting);
                 return true;
@@ -128,6 +137,10 @@ impl HostOracle {
     pub(crate) fn block(&mut self, block: &Block) {
         for accounting in self.accountings.values_mut() {
             accounting.block(block);
+        }
+        let came = (block.flags.start(), block.first_tick, block.end_tick());
+        for waiting in self.waiting.values_mut() {
+            waiting.push(came);
         }
     }
 }
