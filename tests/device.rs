@@ -334,18 +334,10 @@ fn what_would_count_for_nothing_is_refused() {
 #[cfg(target_os = "linux")]
 #[test]
 fn stop_without_a_name_stops_every_device() {
-    use std::io::{BufRead, BufReader};
     use std::process::Stdio;
     use support::served::{Served, ended, until};
     let served = Served::new();
-    let mut second = served
-        .command(&["serve-sim", "--name", "left"])
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut line = String::new();
-    let out = second.stdout.as_mut().unwrap();
-    BufReader::new(out).read_line(&mut line).unwrap();
+    let mut second = served.beside("left");
     let mut arms = ["knee", "left"].map(|name| {
         served
             .command(&["arm", "--zero", "--device", name])

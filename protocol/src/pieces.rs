@@ -7,8 +7,9 @@
 //! they are part of the schema. The receiver applies a commit only when as many
 //! pieces are there as were announced and the seal is valid.
 //!
-//! Revisions begin anew with comms, at the one that was saved. So the seal is another for each
-//! start of comms, and no piece of before a restart is taken for one of after it.
+//! After a restart comms counts revisions from the saved one again, so two commits may have one
+//! number. The seal depends on the boot counter of comms: no piece of before a restart is taken for
+//! one of after it.
 
 use crate::frame::CRC;
 use crate::parameters::{DEFAULTS, PARAMETER_COUNT};

@@ -30,18 +30,13 @@ impl Served {
     }
 
     fn of(home: tempfile::TempDir, more: &[&str]) -> Self {
-        let mut child = crepitus()
-            .args(["serve-sim", "--name", "knee"])
-            .args(more)
-            .env("XDG_RUNTIME_DIR", home.path())
-            .stdout(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut line = String::new();
-        let out = child.stdout.as_mut().unwrap();
-        BufReader::new(out).read_line(&mut line).unwrap();
-        assert!(line.contains("is served as"), "{line}");
+        let child = serve(&home, "knee", more);
         Self { child, home }
+    }
+
+    /// Another one beside it, of this name.
+    pub(crate) fn beside(&self, name: &str) -> Child {
+        serve(&self.home, name, &[])
     }
 
     /// Kills it; its files stay.
@@ -72,6 +67,21 @@ impl Served {
         assert!(output.status.success(), "{}", stderr(&output));
         serde_json::from_str(&stdout(&output)).unwrap()
     }
+}
+
+fn serve(home: &tempfile::TempDir, name: &str, more: &[&str]) -> Child {
+    let mut child = crepitus()
+        .args(["serve-sim", "--name", name])
+        .args(more)
+        .env("XDG_RUNTIME_DIR", home.path())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    let out = child.stdout.as_mut().unwrap();
+    BufReader::new(out).read_line(&mut line).unwrap();
+    assert!(line.contains("is served as"), "{line}");
+    child
 }
 
 impl Drop for Served {

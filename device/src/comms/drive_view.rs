@@ -134,8 +134,8 @@ impl DriveView {
         Some(self.known_revision(start))
     }
 
-    /// The active parameters. None where it has not yet reported any of this boot of comms, with
-    /// whose revisions they begin anew.
+    /// The active parameters; none until the drive has reported some of this boot of comms.
+    /// Revisions of an earlier boot may have the same number.
     pub fn known_revision(&self, start: u16) -> Revision {
         self.status_since(start)
             .map_or(Revision::NONE, |status| status.revision)

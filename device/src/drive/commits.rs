@@ -5,7 +5,8 @@ use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::pieces::{Piece, Reassembly};
 use crepitus_protocol::{Revision, ValueError, Values};
 
-/// Received commits and their outcomes, since this boot of comms: its revisions begin anew.
+/// Received commits and their outcomes, of this boot of comms: after each boot it counts revisions from
+/// the saved one again.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Commits {
     /// Boot counter of comms.
@@ -83,8 +84,8 @@ impl Commits {
         values
     }
 
-    /// Records that a commit was prepared, and will take effect, or rejected. Not if comms has
-    /// started anew meanwhile: to that it is none of its own.
+    /// Records that a commit was prepared, and will take effect, or rejected. One of an earlier boot
+    /// of comms is not recorded: its revision means nothing to this boot.
     pub fn done(
         &mut self,
         (revision, comms_start): Taken,
@@ -132,7 +133,7 @@ mod tests {
     #[expect(clippy::cast_possible_truncation, reason = "less than 32")]
     const ALL: u8 = PARAMETER_COUNT.div_ceil(PIECE_VALUES) as u8;
 
-    /// What arrives of a commit, from this start of comms.
+    /// A link on which this boot of comms sends commits.
     struct Wire {
         counters: Counters,
         commits: Commits,
@@ -273,7 +274,7 @@ mod tests {
         assert_eq!(wire.take(), Some((Revision(10), values)));
     }
 
-    /// Revisions begin anew with comms: the same number is another commit.
+    /// After a restart comms counts revisions from the saved one again: two commits may have one number.
     #[test]
     fn what_is_of_another_start_of_comms_is_not_known_and_not_taken() {
         let (old, mut new) = (Values::default(), Values::default());

@@ -474,7 +474,7 @@ impl Bench {
             return;
         }
         // One that the drive would take for old is given the next after what it has in force.
-        if self.drive.is_overtaken_by(now) {
+        if self.drive.has_reported_before(now) {
             self.revision = now;
             return;
         }

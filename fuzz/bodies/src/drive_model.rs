@@ -57,7 +57,7 @@ pub(crate) struct DriveModel {
     /// The latest tick that it has reported since.
     latest_tick: u64,
     reassembly: (Revision, Reassembly),
-    /// What it has reported to be in force.
+    /// Revisions that its statuses have reported.
     revisions: BTreeSet<u32>,
     /// The part of its post-mortem record that it was asked for.
     crash_part: Option<u8>,
@@ -109,8 +109,8 @@ impl DriveModel {
         std::mem::take(&mut self.has_rejected)
     }
 
-    /// Whether this is the next one after a revision that it has reported to be in force.
-    pub(crate) fn is_overtaken_by(&self, revision: Revision) -> bool {
+    /// Whether a status has reported the revision just before this one.
+    pub(crate) fn has_reported_before(&self, revision: Revision) -> bool {
         let before = |reported: &u32| Revision(*reported).next() == revision;
         self.revisions.iter().any(before)
     }

@@ -104,7 +104,7 @@ pub fn simulated_folder() -> PathBuf {
 }
 
 /// The simulated devices of a folder, by name; none if it does not exist. Unlike [`devices`], also
-/// those whose link [`leads_elsewhere`]: whoever names one is to be told.
+/// those whose link [`leads_elsewhere`]: opening one of these by name is an error that says where it leads.
 pub fn simulated_devices(folder: &Path) -> Vec<Device> {
     links_in(folder, |standing| *standing != Standing::Ended)
 }
