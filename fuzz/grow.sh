@@ -38,7 +38,7 @@ build() {
 # either. `places` counts regions of the source: of a generic function an edge is there
 # once for each rung and effect it is built for, a place once.
 piece() {
-    local target=$1 number event cov ft rest executions=0 result=ok places_new=0 places=0
+    local target=$1 number event cov ft rest executions=0 result=ok places_new=0 places=0 new_to_all=0
     local cov_now=0 ft_now=0 cov_new=0 ft_new=0
     local start=$EPOCHSECONDS cov_s=$EPOCHSECONDS ft_s=$EPOCHSECONDS
     local options=(-max_total_time="$piece_s" -print_final_stats=1 -timeout=10 -artifact_prefix="$grown/crash-$target-")
@@ -61,11 +61,11 @@ piece() {
         esac
     done < <("$grown/bin/$target" "${options[@]}" "$grown/$target" "fuzz/corpus/$target" 2>&1 | tee "$grown/last-$target.log")
     local now=$EPOCHSECONDS
-    read -r places_new places _ < <(places "$target")
+    read -r places_new places _ new_to_all < <(places "$target")
     # In one write: two runs may share a ledger.
-    printf '%s\t%s\t%d\t%d\t%d\t%d\t%d\t%d\t%d\t%d\t%s\t%d\t%d\n' "$target" "$(date -u +%FT%TZ)" $((now - start)) \
+    printf '%s\t%s\t%d\t%d\t%d\t%d\t%d\t%d\t%d\t%d\t%s\t%d\t%d\t%d\n' "$target" "$(date -u +%FT%TZ)" $((now - start)) \
         "$executions" "$cov_now" "$ft_now" "$cov_new" "$ft_new" $((now - cov_s)) $((now - ft_s)) "$result" \
-        "$places" "$places_new" |
+        "$places" "$places_new" "$new_to_all" |
         tee -a "$ledger"
 }
 
@@ -87,16 +87,21 @@ status() {
             places[$1] = $12; no_place[$1] = $13 > 0 || NF < 13 ? 0 : no_place[$1] + $3
             if ($11 == "crash") { crashes[$1]++; no_cov[$1] = no_ft[$1] = no_place[$1] = 0 }
             all += $4; all_s += $3
+            # Of all targets together: since a piece found what no target had reached, or a crash.
+            quiet_s += $3; quiet_runs += $4; quiet_of[$1] += $3
+            if (NF < 14 || $14 > 0 || $11 == "crash") { quiet_s = quiet_runs = 0; delete quiet_of }
         }
         END {
             print "target        executions   minutes     cov      ft  places   quiet: cov, min   ft, min   places, min   crashes"
             for (i = 1; i <= count; i++) {
                 t = order[i]
-                quiet += no_place[t]
                 printf "%-10s %13d %9.1f %7d %7d %7d %17.1f %9.1f %13.1f %9d\n", t, executions[t], seconds[t] / 60, \
                     cov[t], ft[t], places[t], no_cov[t] / 60, no_ft[t] / 60, no_place[t] / 60, crashes[t]
             }
-            printf "%-10s %13d %9.1f %55.1f\n", "all", all, all_s / 60, quiet / 60
+            printf "%-10s %13d %9.1f\n", "all", all, all_s / 60
+            printf "no place new to all targets, no crash: the last %.1f min, %d executions;", quiet_s / 60, quiet_runs
+            for (i = 1; i <= count; i++) printf " %s %.1f", order[i], quiet_of[order[i]] / 60
+            print ""
         }' "$ledger"
 }
 
@@ -149,11 +154,11 @@ case "${1:-}" in
     *)
         build
         if [ ! -f "$ledger" ]; then
-            printf 'target\tdate\tseconds\texecutions\tcov\tft\tnew cov\tnew ft\tquiet cov s\tquiet ft s\tresult\tplaces\tnew places\n' >"$ledger"
+            printf 'target\tdate\tseconds\texecutions\tcov\tft\tnew cov\tnew ft\tquiet cov s\tquiet ft s\tresult\tplaces\tnew places\tnew to all\n' >"$ledger"
         fi
         for target in ${*:-$targets}; do
             mkdir -p "$grown/$target"
-            echo "$target: $(places "$target") places are new, reached, known"
+            echo "$target: $(places "$target") places are new, reached, known, new to all targets"
         done
         for ((round = 0; round < rounds; round++)); do
             for target in ${*:-$targets}; do piece "$target"; done

@@ -2,7 +2,8 @@
 """Which places of the source a target's corpus reaches, and which it has not reached before.
 
     fuzz/places.py build                    the program that counts; after a change of the source it begins anew
-    fuzz/places.py new TARGET FOLDER...     reads files that it has not read yet; how many places are new
+    fuzz/places.py new TARGET FOLDER...     reads files that it has not read yet; how many places are new to it,
+                                            and how many of them no target had reached
     fuzz/places.py left TARGET              places that no file reached, of functions of which one did
 
 A place is a region of the source as the compiler counts it: a function, a loop, an arm, a
@@ -64,24 +65,33 @@ def state(target):
     return file, json.loads(file.read_text()) if file.exists() else {"read": [], "places": {}}
 
 
+def known():
+    """The places that any target has reached."""
+    states = (json.loads(file.read_text()) for file in (GROWN / "places").glob("*.json"))
+    return {place for one in states for place, is_reached in one["places"].items() if is_reached}
+
+
 def new(target, folders):
     file, before = state(target)
     read = set(before["read"])
     files = {path.name: path for folder in folders for path in sorted(pathlib.Path(folder).iterdir())}
     unread = {name: path for name, path in files.items() if name not in read}
     places = before["places"]
-    found = []
+    found, new_to_all = [], []
     if unread:
+        before_all = known()
         for place, is_reached in reached(target, unread.values()).items():
             if is_reached and not places.get(place):
                 found.append(place)
             places[place] = places.get(place, False) or is_reached
+        new_to_all = [place for place in found if place not in before_all]
         file.parent.mkdir(exist_ok=True)
         temporary = file.with_suffix(".new")
         temporary.write_text(json.dumps({"read": sorted(read | unread.keys()), "places": places}))
         temporary.replace(file)
-    print(*found, sep="\n", file=sys.stderr, end="\n" if found else "")
-    print(len(found), sum(places.values()), len(places))
+    for place in found:
+        print(place, *["new to all"] * (place in new_to_all), file=sys.stderr)
+    print(len(found), sum(places.values()), len(places), len(new_to_all))
 
 
 def left(target):

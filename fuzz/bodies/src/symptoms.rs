@@ -194,10 +194,11 @@ struct Knee<F: Real> {
     shown_nm: [f64; SYMPTOMS],
     /// What each held when it was switched on, and what motion has added since, N·m.
     earned_nm: [f64; SYMPTOMS],
-    /// Each has had a spring besides, has given energy, or was a play, at some time.
+    /// Each has had a spring besides, or has given energy, at some time.
     was_elastic: [bool; SYMPTOMS],
     was_active: [bool; SYMPTOMS],
-    was_passive: [bool; SYMPTOMS],
+    /// Each gives energy, or did when it was switched off.
+    is_paid: [bool; SYMPTOMS],
     /// The tank as seen from outside, J.
     level_j: f64,
     highest_j: f64,
@@ -226,7 +227,7 @@ impl<F: Real> Knee<F> {
             earned_nm: [0.0; SYMPTOMS],
             was_elastic: [false; SYMPTOMS],
             was_active: [false; SYMPTOMS],
-            was_passive: [false; SYMPTOMS],
+            is_paid: [false; SYMPTOMS],
             level_j: 0.0,
             highest_j: 0.0,
             tick_j: 0.0,
@@ -249,11 +250,10 @@ impl<F: Real> Knee<F> {
             self.bounds[place] = bounds;
             self.was_elastic[place] |= bounds.is_elastic;
             self.was_active[place] |= bounds.is_active;
-            self.was_passive[place] |= bounds.is_on && !bounds.is_active;
+            if bounds.is_on {
+                self.is_paid[place] = bounds.is_active;
+            }
         }
-        // What leaves, or fades, gives back no more than this.
-        let held_j = |nm: f64| nm * nm / (2.0 * 10.0);
-        self.level_j += self.shown_nm.iter().map(|nm| held_j(*nm)).sum::<f64>();
     }
 
     fn tick(&mut self, step: Option<&ShaftStep<f64>>) {
@@ -338,7 +338,8 @@ impl<F: Real> Knee<F> {
                     "{name} pushes a leg that rests: from {was_nm} to {nm} N·m"
                 );
             }
-            if self.was_active[place] && !self.was_passive[place] {
+            // One tank pays for all together: what one takes in, another may give.
+            if self.is_paid[place] {
                 work_j += was_nm * travel_rad;
             }
             self.allowed_nm[place] = allowed_nm;

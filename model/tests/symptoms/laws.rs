@@ -94,8 +94,9 @@ proptest! {
         amplitude in 0.0..4.5_f64,
         frequency in 0.5..12.0_f64,
         sweep in 0.05..0.6_f64,
+        commits_after in prop::option::of(400..8_000_u32),
     ) {
-        let settings = EffectSettings {
+        let mut settings = EffectSettings {
             spasticity: Some(SpasticitySettings {
                 form: 1,
                 threshold_deg: 60.0,
@@ -118,6 +119,12 @@ proptest! {
         };
         let (mut level_j, mut highest_j, mut nm) = (0.0_f64, 0.0_f64, 0.0);
         for n in 0..60_000_u32 {
+            // Another rhythm: what was pushing fades, and is paid, too.
+            if commits_after.is_some_and(|ticks| n % ticks == ticks - 1) {
+                let clonus = settings.clonus.as_mut().unwrap();
+                clonus.frequency_hz = 11.0 - clonus.frequency_hz;
+                rig.commit(settings);
+            }
             let (from, to) = (motion(f64::from(n) * TICK_S), motion(f64::from(n + 1) * TICK_S));
             level_j += nm * (to.0 - from.0) + TANK_REFILL_W * TICK_S;
             nm = rig.step(from, to, to.0 - from.0);

@@ -156,13 +156,12 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
         if is_active {
             nm = paid_share * nm;
         }
-        let gives = is_active && nm != F::ZERO;
         if !matches!(self.way, Way::Free) {
             nm = self.held_back(nm, travel);
             besides.is_settling = true;
         }
-        if gives {
-            // The tank pays for what is shown.
+        if is_active && nm != F::ZERO {
+            // The tank pays for what is shown, also where the law itself has none any more.
             besides.active_nm += nm;
         }
         self.last_nm = nm;
