@@ -316,6 +316,14 @@ impl Ledger {
         let absent = received.saturating_sub(totals.received);
         let most = totals.damaged + totals.on_the_way();
         totals.damaged = totals.damaged.max(absent.min(most));
+        // If some are left it is not known which.
+        if totals.on_the_way() == 0 {
+            for gap in &mut self.books.gaps {
+                if matches!(gap.cause, Cause::OnTheWay | Cause::Both) {
+                    gap.cause = Cause::Damaged;
+                }
+            }
+        }
         if core::mem::take(&mut self.begin_is_unknown) {
             self.books.damaged_before(absent.saturating_sub(most));
         }
@@ -455,6 +463,26 @@ mod tests {
         let mut swapped = ticks.clone();
         swapped.swap(30, 31);
         assert!(!recount(&swapped).is_empty());
+    }
+
+    /// Where bytes are out of order no part of the file reads as damaged: what the recorder had says so.
+    #[test]
+    fn a_gap_of_samples_that_the_recorder_had_is_damaged() {
+        let causes = |received| {
+            let mut ledger = Ledger::default();
+            ledger.subscribed(begin(0, 0, 1));
+            assert!(ledger.block(&block(20, 0, 1)));
+            // 20 by the device, 20 that are not there.
+            assert!(ledger.block(&block(80, 20, 1)));
+            ledger.expect_received(received);
+            let books = ledger.into_books();
+            let gaps: Vec<_> = books.gaps.iter().map(|gap| gap.cause).collect();
+            (books.totals.damaged, gaps)
+        };
+        let [way, both] = [Cause::OnTheWay, Cause::Both];
+        assert_eq!(causes(40), (0, vec![way, both]));
+        assert_eq!(causes(60), (20, vec![way, both]), "which of them");
+        assert_eq!(causes(80), (40, vec![Cause::Damaged; 2]));
     }
 
     #[test]
