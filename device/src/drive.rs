@@ -25,6 +25,7 @@ pub mod commits;
 pub mod emf_check;
 pub mod exchange;
 pub mod heartbeat_monitor;
+pub mod idle;
 pub mod link;
 pub mod link_task;
 pub mod motor;
@@ -48,6 +49,7 @@ use crepitus_protocol::management::Identity;
 use crepitus_protocol::pieces::Reassembly;
 use crepitus_protocol::{CoilFault, Fault, Revision, State, ValueError, Values};
 use exchange::{Exchange, Rendered};
+use idle::{Plans, prepare_pending};
 use link_task::{LinkTask, Shared};
 use prepare::{Preparation, Prepared, Start};
 use rendering::Rendering;
@@ -127,6 +129,22 @@ impl Shared for Parts<'_> {
     }
 }
 
+/// Those of `idle`.
+struct IdleParts<'a> {
+    parts: Parts<'a>,
+    prepared: &'a mut Option<Prepared>,
+}
+
+impl Plans for IdleParts<'_> {
+    fn parts(&mut self) -> &mut impl Shared {
+        &mut self.parts
+    }
+
+    fn store(&mut self, plan: Prepared) {
+        *self.prepared = Some(plan);
+    }
+}
+
 impl Drive {
     /// The state after boot.
     ///
@@ -183,24 +201,17 @@ impl Drive {
 
     /// `idle`: prepares a pending commit once the previous one has settled.
     pub fn prepare(&mut self) {
-        if self.exchange.is_busy() {
-            return;
-        }
         let mut gathered = Reassembly::default();
-        let Some(taken) = self.commits.take_into(&mut gathered) else {
-            return;
+        let mut parts = IdleParts {
+            parts: Parts {
+                command: &mut self.command,
+                commits: &mut self.commits,
+            },
+            prepared: &mut self.prepared,
         };
-        let Some(values) = Commits::verified(&gathered, &self.counters) else {
-            return;
-        };
-        let is_live = self.command.safety().is_live();
-        let result = self.preparation.prepare(taken.0, &values, is_live);
-        let done = result.as_ref().map(|_| ()).map_err(|error| *error);
-        self.commits.done(taken, done, &self.counters);
-        if let Ok(prepared) = result {
-            self.prepared = Some(prepared);
-            self.exchange.plan_stored();
-        }
+        let (exchange, counters) = (&self.exchange, &self.counters);
+        let preparation = &mut self.preparation;
+        prepare_pending(preparation, &mut gathered, &mut parts, exchange, counters);
     }
 
     /// `link`, priority 1: a byte from comms.

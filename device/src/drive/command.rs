@@ -100,6 +100,8 @@ pub struct Command {
     without_comms: u32,
     /// Revision of the active parameters.
     revision: Revision,
+    /// The boot of comms that has sent it.
+    sent_by: u16,
     /// The line, as read back.
     line_is_on: bool,
     /// The encoder's last count, and that of the angle's zero.
@@ -139,6 +141,7 @@ impl Command {
             conducting_ticks: 0,
             without_comms: 0,
             revision: plan.revision,
+            sent_by: plan.comms_start,
             line_is_on: false,
             batch: Batch::new(boot.tick, boot.sequence),
             count: boot.counter.cast_signed(),
@@ -168,13 +171,23 @@ impl Command {
             (self.chirp, self.has_chirped) = (None, false);
         }
         self.has_coil = self.coil.is_in_use();
-        self.revision = plan.revision;
+        (self.revision, self.sent_by) = (plan.revision, plan.comms_start);
         counters.count(DriveCounter::Commits);
     }
 
     /// Revision of the active parameters.
     pub fn revision(&self) -> Revision {
         self.revision
+    }
+
+    /// The same for comms: none if it is of another boot of it, which may have had the same
+    /// number for something else.
+    pub fn known_revision(&self) -> Revision {
+        if self.safety.comms_start() == Some(self.sent_by) {
+            self.revision
+        } else {
+            Revision::NONE
+        }
     }
 
     /// Number of the next tick.

@@ -17,8 +17,6 @@ pub struct Commits {
     /// The latest one that was whole, and so prepared or rejected. What is not whole may be of
     /// another boot.
     latest: Option<Revision>,
-    /// The first one that was prepared.
-    first: Option<Revision>,
     /// The last rejected revision, and the reason.
     refused: Option<(Revision, ValueError)>,
 }
@@ -52,18 +50,6 @@ impl Commits {
         }
         self.reassembly.add(piece);
         false
-    }
-
-    /// The revision for comms of what is in force: none if it is of another boot of comms,
-    /// which may have had the same number for something else.
-    pub fn known(&self, active: Revision) -> Revision {
-        let is_since = |first| !active.is_before(first);
-        let is_until = |latest: Revision| !latest.is_before(active);
-        if self.first.is_some_and(is_since) && self.latest.is_some_and(is_until) {
-            active
-        } else {
-            Revision::NONE
-        }
     }
 
     /// Takes the pending commit once complete, and copies it to `gathered`; see
@@ -104,7 +90,6 @@ impl Commits {
             self.refused = Some((revision, error));
         } else {
             self.refused = None;
-            self.first = self.first.or(Some(revision));
         }
     }
 
@@ -117,8 +102,7 @@ impl Commits {
     pub fn restart(&mut self, comms_start: u16) {
         if comms_start != self.comms_start {
             self.comms_start = comms_start;
-            (self.pending, self.latest) = (None, None);
-            (self.first, self.refused) = (None, None);
+            (self.pending, self.latest, self.refused) = (None, None, None);
         }
     }
 }
@@ -276,40 +260,25 @@ mod tests {
 
     /// After a restart comms counts revisions from the saved one again: two commits may have one number.
     #[test]
-    fn what_is_of_another_start_of_comms_is_not_known_and_not_taken() {
+    fn what_is_of_another_start_of_comms_is_not_taken() {
         let (old, mut new) = (Values::default(), Values::default());
         new.set(id::STATIC_TORQUE, 0.5);
         let mut wire = Wire::new();
         (wire.start, wire.commits.comms_start) = (7, 7);
         wire.whole(8, &old);
         assert!(wire.take().is_some());
-        wire.done(8, Ok(()));
-        assert_eq!(wire.commits.known(Revision(8)), Revision(8));
         wire.commits.restart(8);
-        assert_eq!(wire.commits.known(Revision(8)), Revision::NONE);
         // Prepared while comms started.
         wire.done(8, Ok(()));
-        assert_eq!(wire.commits.known(Revision(8)), Revision::NONE);
         // Late, or once more.
         wire.whole(8, &old);
         assert_eq!(wire.take(), None);
-        assert_eq!(wire.commits.known(Revision(8)), Revision::NONE);
         wire.start = 8;
         // An older number is none to the new start.
         wire.whole(7, &old);
         assert_eq!(wire.take(), Some((Revision(7), old)));
         wire.done(7, Ok(()));
-        // Until that is in force, the old one is.
-        assert_eq!(wire.commits.known(Revision(8)), Revision::NONE);
         wire.whole(8, &new);
         assert_eq!(wire.take(), Some((Revision(8), new)));
-        wire.done(8, Ok(()));
-        let why = ValueError::NeedsDisarmed { id: 6 };
-        wire.done(9, Err(why));
-        // What was before the last one is known, too.
-        for known in [7, 8].map(Revision) {
-            assert_eq!(wire.commits.known(known), known);
-        }
-        assert_eq!(wire.commits.known(Revision(10)), Revision::NONE);
     }
 }

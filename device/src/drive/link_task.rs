@@ -289,12 +289,11 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             *state = safety.state();
             *fault = safety.fault().map_or(0, Fault::code);
             *coil_fault = command.coil().fault().map_or(0, CoilFault::code);
-            *revision = command.revision();
+            *revision = command.known_revision();
             *zeroed = command.is_zeroed();
             *polarity_proven = safety.polarity_proven();
             *awaits_comms = safety.awaits_comms();
         });
-        *revision = shared.commits(|commits| commits.known(*revision));
         counters.read(counts);
     }
 
@@ -353,7 +352,7 @@ mod tests {
     use crate::drive::prepare::Preparation;
     use crepitus_protocol::ValueError;
     use crepitus_protocol::frame::{FRAME_BYTES, SoftwareCrc};
-    use crepitus_protocol::link::FromDrive;
+    use crepitus_protocol::link::{FromDrive, Heartbeat};
     use std::vec::Vec;
 
     struct Parts {
@@ -440,7 +439,7 @@ mod tests {
     fn a_status_has_what_is_in_force() {
         let (_, first) = Preparation::new().unwrap();
         let mut plan = first.prepared.command;
-        plan.revision = Revision(7);
+        (plan.revision, plan.comms_start) = (Revision(7), 3);
         let boot = Boot {
             start: 5,
             tick: 1_000,
@@ -450,10 +449,16 @@ mod tests {
         bench.task = LinkTask::new(boot.identity, boot.start);
         bench.parts.command = Command::new(&first.motor, &plan, &boot);
         bench.parts.command.zero().unwrap();
-        bench
-            .parts
-            .commits
-            .done((Revision(7), 0), Ok(()), &bench.counters);
+        let hear = |bench: &mut Bench, start| {
+            let heartbeat = Heartbeat {
+                seen_tick: 1_000,
+                start,
+                ..Heartbeat::default()
+            };
+            let safety = bench.parts.command.safety_mut();
+            safety.receive_heartbeat(1_000, &heartbeat, &bench.counters);
+        };
+        hear(&mut bench, 3);
         bench.counters.count(DriveCounter::Foreign);
         let [status] = bench.statuses(40)[..] else {
             panic!("one status");
@@ -463,6 +468,7 @@ mod tests {
         let expected = DriveStatus {
             tick: 1_000,
             start: 5,
+            comms_start: Some(3),
             revision: Revision(7),
             zeroed: true,
             counters,
@@ -470,7 +476,15 @@ mod tests {
             ..DriveStatus::default()
         };
         assert_eq!(status, expected);
-        assert_eq!(counters.iter().sum::<u32>(), 1);
+        assert_eq!(counters.iter().sum::<u32>(), 2, "a heartbeat, and that");
+        // To another boot of comms that number may be another commit's.
+        hear(&mut bench, 4);
+        bench.task.link.request_status();
+        let [status] = bench.statuses(40)[..] else {
+            panic!("one status");
+        };
+        let expected = (Some(4), Revision::NONE);
+        assert_eq!((status.comms_start, status.revision), expected);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! need logarithms in f64 to compute. The idle loop does that; the tick applies
 //! a complete [`Prepared`] between two blocks of telemetry.
 
+use crate::drive::commits::Taken;
 use crate::drive::overload::OverloadPlan;
 use crate::drive::range::RangePlan;
 use crate::drive::slow_checks::{JointSensorPlan, SlowPlan};
@@ -164,6 +165,8 @@ pub struct RenderingPlan {
 pub struct CommandPlan {
     /// Revision of the parameters, for the blocks.
     pub revision: Revision,
+    /// The boot of comms that has sent it: another counts revisions anew.
+    pub comms_start: u16,
     /// The motor, if it has changed.
     pub motor: Option<MotorPlan>,
     /// Angle of one count, rad.
@@ -229,7 +232,7 @@ impl Preparation {
         };
         let reader = Reader::of(&active.encoder)?;
         let motor = motor(&active)?;
-        let prepared = preparation.prepare(Revision::NONE, &values, false)?;
+        let prepared = preparation.prepare((Revision::NONE, 0), &values, false)?;
         Ok((
             preparation,
             Start {
@@ -254,7 +257,7 @@ impl Preparation {
     /// it is `armed`.
     pub fn prepare(
         &mut self,
-        revision: Revision,
+        (revision, comms_start): Taken,
         values: &Values,
         armed: bool,
     ) -> Result<Prepared, ValueError> {
@@ -311,6 +314,7 @@ impl Preparation {
             },
             command: CommandPlan {
                 revision,
+                comms_start,
                 motor: if motor_changed {
                     Some(motor(&next)?)
                 } else {

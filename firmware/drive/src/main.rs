@@ -28,7 +28,7 @@ use defmt_rtt as _;
 
 #[rtic::app(device = stm32f4xx_hal::pac, peripherals = true)]
 mod app {
-    use crate::shared::{Commanding, Parts};
+    use crate::shared::{Commanding, IdleParts, Parts};
     use board::bridge::Bridge;
     use board::coil::Coil;
     use board::converter::Converters;
@@ -48,7 +48,8 @@ mod app {
     use crepitus_device::drive::command::{Command, Inputs};
     use crepitus_device::drive::commits::Commits;
     use crepitus_device::drive::exchange::Exchange;
-    use crepitus_device::drive::link_task::LinkTask;
+    use crepitus_device::drive::idle::prepare_pending;
+    use crepitus_device::drive::link_task::{LinkTask, Shared as _};
     use crepitus_device::drive::motor;
     use crepitus_device::drive::prepare::{Preparation, RenderingPlan};
     use crepitus_device::drive::rendering::Rendering;
@@ -294,40 +295,24 @@ mod app {
             command, commits, rendering_plan, &exchange, &counters, &checkins,
         ]
     )]
-    fn idle(mut cx: idle::Context) -> ! {
+    fn idle(cx: idle::Context) -> ! {
         let mut reported = None;
         let mut gathered = Reassembly::default();
+        let (exchange, counters) = (cx.shared.exchange, cx.shared.counters);
+        let mut parts = IdleParts {
+            parts: Parts {
+                command: cx.shared.command,
+                commits: cx.shared.commits,
+            },
+            rendering_plan: cx.shared.rendering_plan,
+        };
         loop {
-            if !cx.shared.exchange.is_busy()
-                && let Some(taken) = cx
-                    .shared
-                    .commits
-                    .lock(|commits| commits.take_into(&mut gathered))
-                && let Some(values) = Commits::verified(&gathered, cx.shared.counters)
-            {
-                let is_live = cx
-                    .shared
-                    .command
-                    .lock(|part| part.command.safety().is_live());
-                let result = cx.local.preparation.prepare(taken.0, &values, is_live);
-                let done = result.as_ref().map(|_| ()).map_err(|error| *error);
-                let counters = cx.shared.counters;
-                cx.shared
-                    .commits
-                    .lock(|commits| commits.done(taken, done, counters));
-                if let Ok(prepared) = result {
-                    let (rendering, command) = (prepared.rendering, prepared.command);
-                    cx.shared
-                        .rendering_plan
-                        .lock(|slot| *slot = Some(rendering));
-                    cx.shared.command.lock(|part| part.plan = Some(command));
-                    cx.shared.exchange.plan_stored();
-                }
-            }
-            let now = cx.shared.command.lock(|part| {
-                let safety = part.command.safety();
+            let preparation = &mut *cx.local.preparation;
+            prepare_pending(preparation, &mut gathered, &mut parts, exchange, counters);
+            let now = parts.parts.command(|command| {
+                let safety = command.safety();
                 let fault = safety.fault().map_or(0, Fault::code);
-                (safety.state(), fault, part.command.revision())
+                (safety.state(), fault, command.revision())
             });
             if reported != Some(now) {
                 reported = Some(now);

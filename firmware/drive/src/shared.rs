@@ -1,9 +1,10 @@
-//! Resources that the link's task shares with others, behind RTIC's locks.
+//! Resources that the link's task and `idle` share with others, behind RTIC's locks.
 
 use crepitus_device::drive::command::Command;
 use crepitus_device::drive::commits::Commits;
+use crepitus_device::drive::idle::Plans;
 use crepitus_device::drive::link_task::Shared;
-use crepitus_device::drive::prepare::CommandPlan;
+use crepitus_device::drive::prepare::{CommandPlan, Prepared, RenderingPlan};
 use rtic::Mutex;
 
 /// The resource of `command_motor`: its state and its plan, behind one lock.
@@ -30,5 +31,28 @@ where
 
     fn commits<R>(&mut self, work: impl FnOnce(&mut Commits) -> R) -> R {
         self.commits.lock(|commits| work(commits))
+    }
+}
+
+/// Those of `idle`.
+pub(crate) struct IdleParts<C, K, R> {
+    pub(crate) parts: Parts<C, K>,
+    pub(crate) rendering_plan: R,
+}
+
+impl<C, K, R> Plans for IdleParts<C, K, R>
+where
+    C: Mutex<T = Commanding>,
+    K: Mutex<T = Commits>,
+    R: Mutex<T = Option<RenderingPlan>>,
+{
+    fn parts(&mut self) -> &mut impl Shared {
+        &mut self.parts
+    }
+
+    fn store(&mut self, plan: Prepared) {
+        let Prepared { rendering, command } = plan;
+        self.rendering_plan.lock(|slot| *slot = Some(rendering));
+        self.parts.command.lock(|part| part.plan = Some(command));
     }
 }
