@@ -121,7 +121,8 @@ impl Sessions {
 
     /// Opens a session, or gives it another nonce; it has no subscription then.
     /// Where there is no room, the least recently used session is evicted that
-    /// is not `needed`.
+    /// is not `needed`, one without a subscription first: short commands come and go beside a
+    /// recording, which says little meanwhile.
     pub fn open(&mut self, request: &Request, needed: [Option<Session>; 2]) -> Reply {
         let nonce = self.next_nonce();
         let Request {
@@ -165,7 +166,7 @@ impl Sessions {
             .iter()
             .enumerate()
             .filter(|(_, entry)| !needed.contains(&Some(entry.session)))
-            .min_by_key(|(_, entry)| entry.used)
+            .min_by_key(|(_, entry)| (entry.is_subscribed, entry.used))
             .map(|(place, _)| place)
     }
 
@@ -349,6 +350,26 @@ mod tests {
         open(&mut sessions, 100, 1);
         assert!(!sessions.is_open(Session(5), nonces[5]));
         assert!(sessions.is_open(Session(2), nonces[2]));
+    }
+
+    /// Many short commands beside a recording, which only listens.
+    #[test]
+    fn one_with_a_subscription_is_evicted_last() {
+        let mut sessions = Sessions::new(1);
+        let nonces: [Nonce; SESSIONS] =
+            core::array::from_fn(|n| open(&mut sessions, u32::try_from(n).unwrap(), 7));
+        sessions.subscribe(Session(0), true);
+        for n in 100..200 {
+            open(&mut sessions, n, 1);
+        }
+        assert!(sessions.is_open(Session(0), nonces[0]));
+        // Where all have one, one of them.
+        for n in 168..200 {
+            sessions.subscribe(Session(n), true);
+        }
+        let last = open(&mut sessions, 200, 1);
+        assert!(!sessions.is_open(Session(0), nonces[0]));
+        assert!(sessions.is_open(Session(200), last));
     }
 
     #[test]

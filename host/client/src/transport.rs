@@ -122,7 +122,7 @@ pub enum TransportError {
     },
     /// The device has restarted, or more programs are connected than it can
     /// remember.
-    #[error("{port}: the device does not know this session any more: it has restarted")]
+    #[error("{port}: the device does not know this session any more: it has restarted, or more than 32 programs are connected to it")]
     Forgotten {
         /// The port.
         port: String,
