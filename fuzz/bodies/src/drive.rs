@@ -498,9 +498,11 @@ impl Bench {
                 Some(Lane::FromDrive) => match body.message().expect("a message") {
                     FromDrive::Status(status) => {
                         let told = (status.tick, status.state, status.revision);
-                        // Of what another start of comms has sent, the drive tells it nothing.
+                        // Of what another start of comms has sent, or one that it has not heard of, the drive
+                        // tells nothing.
+                        let is_other = self.has_restarted || status.comms_start.is_none();
                         let is_so = |(tick, state, revision): &(u64, State, Revision)| {
-                            let is_told = status.revision == Revision::NONE && self.has_restarted;
+                            let is_told = status.revision == Revision::NONE && is_other;
                             (*tick, *state) == (told.0, told.1) && (*revision == told.2 || is_told)
                         };
                         assert!(self.states.iter().any(is_so), "{told:?} was never so");

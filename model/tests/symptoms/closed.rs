@@ -182,6 +182,40 @@ fn clonus_slows_down_to_its_rhythm() {
     );
 }
 
+/// Within one tick, too, no beat begins once the muscle is let go.
+#[test]
+fn clonus_that_is_let_go_beats_no_more() {
+    let settings = EffectSettings {
+        clonus: Some(ClonusSettings::default()),
+        ..EffectSettings::default()
+    };
+    // The second beat is due in the middle of a tick, and the joint passes 55° close to it.
+    let due_s = 0.399_98;
+    let start_s = due_s - 0.05 - 1.3 / 6.0;
+    let most_deg = 60.0 + 150.0 * (0.2 - start_s);
+    for late_s in [-15e-6, -5e-6, 5e-6, 15e-6] {
+        let back_deg_s = (most_deg - 55.0) / (due_s + late_s - 0.25);
+        let motion = |t: f64| {
+            let deg_s = if t < 0.2 - 1e-9 {
+                150.0
+            } else if t < 0.25 - 1e-9 {
+                0.0
+            } else {
+                -back_deg_s
+            };
+            let before_deg = 150.0 * (0.2 - t).max(0.0);
+            let deg = most_deg - before_deg - back_deg_s * (t - 0.25).max(0.0);
+            (deg.to_radians(), f64::to_radians(deg_s))
+        };
+        let run = only::<f64>(settings, motion(0.0).0.to_degrees()).run(0.5, motion);
+        near(run.times(Word::Start)[0], start_s, 1e-9);
+        near(run.times(Word::Stop)[0], due_s + late_s, 1e-9);
+        let beats = run.times(Word::Beat).len();
+        assert_eq!(beats, if late_s < 0.0 { 1 } else { 2 }, "{late_s} s");
+        assert_eq!(run.at(0.44) != 0.0, late_s > 0.0);
+    }
+}
+
 #[test]
 fn texture_snaps_by_the_angle() {
     let settings = EffectSettings {

@@ -311,7 +311,11 @@ impl<F: Real> Law for Clonus<F> {
             Stage::Ready if beyond_rad >= F::ZERO => self.cross(travel, on_change),
             Stage::Beating => {
                 self.interval_since.whole = self.interval_since.whole.saturating_add(travel.ticks);
-                self.pace(F::ZERO, travel, on_change);
+                if is_back {
+                    self.pace_until_let_go(travel, on_change);
+                } else {
+                    self.pace(F::ZERO, travel, on_change);
+                }
             }
             Stage::Ready | Stage::Over => {}
         }
@@ -381,6 +385,23 @@ impl<F: Real> Clonus<F> {
         }
     }
 
+    /// The same where the joint returns within this tick: only a beat whose time came before.
+    #[cold]
+    fn pace_until_let_go(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
+        let ticks = F::from_whole(u64::from(travel.ticks));
+        let let_go_since = (F::ONE - travel.reaches(&self.stop_place())) * ticks;
+        let late = self.interval_since.ticks() - self.interval;
+        if late >= let_go_since {
+            self.next(late, F::ZERO, travel, on_change);
+        }
+    }
+
+    /// Where the muscle is let go.
+    fn stop_place(&self) -> Position<F> {
+        let with = &self.with;
+        with.hold.moved(-with.sense * with.back_rad)
+    }
+
     /// The torque of the beat under way.
     #[inline]
     fn push(&mut self) {
@@ -417,7 +438,7 @@ impl<F: Real> Clonus<F> {
     /// The joint has returned.
     #[cold]
     fn let_go(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
-        let place = self.with.hold.moved(-self.with.sense * self.with.back_rad);
+        let place = self.stop_place();
         if self.beaten > 0 || self.stage == Stage::Beating {
             let nm = self.torque_nm;
             on_change.tell(Word::Stop, || travel.reaches(&place), nm, nm);
