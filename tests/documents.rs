@@ -100,6 +100,27 @@ fn the_readme_names_the_main_job_and_the_tests_first() {
     assert_eq!(commands[1], "cargo test --workspace");
 }
 
+/// The simulated device begins without a zero, and arming it is refused until it has one.
+#[test]
+fn commands_that_arm_the_simulated_device_set_its_zero() {
+    let mut armed = 0;
+    for document in documents() {
+        let text = fs::read_to_string(&document).unwrap();
+        let commands = text.split(['`', '\n']);
+        for command in
+            commands.filter(|words| words.contains("crepitus ") && words.contains("--device sim"))
+        {
+            let mut words = command.split(' ').take_while(|word| !word.starts_with('#'));
+            if words.clone().any(|word| word == "--arm") {
+                armed += 1;
+                let is_set = words.any(|word| word == "--zero");
+                assert!(is_set, "{}: {command}", document.display());
+            }
+        }
+    }
+    assert!(armed >= 3, "{armed}");
+}
+
 #[test]
 fn every_dependency_has_its_reason() {
     let manifest = fs::read_to_string(repository().join("Cargo.toml")).unwrap();

@@ -15,7 +15,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
-use support::{check_books, crepitus, names, recording, rows, run, stderr, stdout, summary};
+use support::{
+    check_books, crepitus, names, recording, refuses, rows, run, stderr, stdout, summary,
+};
 
 /// A recording of the simulated device, half a second long.
 fn record(folder: &Path, name: &str) -> Output {
@@ -42,7 +44,10 @@ fn text(path: &Path) -> &str {
 fn any_name_works_and_the_hint_can_be_pasted() {
     let home = tempfile::tempdir().unwrap();
     let folder = home.path();
+    // A folder with `-report` in its name would be too long.
+    let long = "n".repeat(250);
     let all = [
+        long.as_str(),
         "x.json",
         "x.csv",
         "x.parquet",
@@ -81,6 +86,58 @@ fn any_name_works_and_the_hint_can_be_pasted() {
         assert_eq!(again.status.code(), Some(2));
         assert!(stderr(&again).contains("already exists"));
     }
+}
+
+#[test]
+fn a_report_replaces_nothing_but_its_own() {
+    let home = tempfile::tempdir().unwrap();
+    let [a, b] = ["a", "b"].map(|name| recorded(home.path(), name));
+    let out = home.path().join("out");
+    let report = |file: &Path| run(&["report", text(file), "--out", text(&out)]);
+    for _ in 0..2 {
+        let output = report(&a);
+        assert!(output.status.success(), "{}", stderr(&output));
+    }
+    let before = fs::read(out.join("report.html")).unwrap();
+    let output = report(&b);
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(said.contains("holds other results"), "{said}");
+    assert_eq!(fs::read(out.join("report.html")).unwrap(), before);
+    // Somebody's own, and results of another kind.
+    fs::write(out.join("summary.json"), "{}").unwrap();
+    assert_eq!(report(&a).status.code(), Some(2));
+}
+
+/// Of either format, also where only the end of the work tells the name.
+#[test]
+fn results_replace_no_recording() {
+    let home = tempfile::tempdir().unwrap();
+    let a = recorded(home.path(), "a");
+    let scene = ["run", "fig6-ideal-cycle", "--set", "duration_s=0.1"];
+    for (name, arguments) in [
+        ("report.html", &["report", text(&a)][..]),
+        ("summary.json", &["report", text(&a)]),
+        ("torque.svg", &["report", text(&a), "--pictures"]),
+        ("report.html", &scene),
+        ("summary.json", &[&scene[..], &["--force"]].concat()),
+        ("trace.csv", &scene),
+    ] {
+        let out = tempfile::tempdir().unwrap();
+        let kept = recorded(out.path(), name);
+        refuses(
+            &[arguments, &["--out", text(out.path())]].concat(),
+            2,
+            "is a recording, and would be replaced",
+        );
+        assert_eq!(names(out.path()), [name]);
+        assert!(recording(&kept).is_complete());
+    }
+    let out = home.path().join("a-report");
+    fs::create_dir(&out).unwrap();
+    let log = recording_in_progress(&out.join("report.html"));
+    refuses(&["report", text(&a)], 2, "is a recording");
+    assert_eq!(fs::read(out.join("report.html")).unwrap(), log);
 }
 
 #[test]
@@ -326,6 +383,8 @@ fn a_disk_that_gets_full_at_the_end_costs_nothing() {
     assert!(recording(&log).is_complete());
 }
 
+/// With the libraries of `CREPITUS_PYTHON`, or of the usual Python. What is not installed is left
+/// out, unless `CREPITUS_NEEDS_PYTHON` is set.
 #[test]
 fn pandas_polars_and_duckdb_open_the_file() {
     let home = tempfile::tempdir().unwrap();
@@ -379,7 +438,13 @@ fn pandas_polars_and_duckdb_open_the_file() {
             .output()
             .is_ok_and(|output| output.status.success());
         if !is_there {
-            eprintln!("left out: {library} is not installed for {python}");
+            let missing = format!("{library} is not installed for {python}");
+            let is_needed = std::env::var_os("CREPITUS_NEEDS_PYTHON").is_some();
+            assert!(
+                !is_needed,
+                "{missing}: name a Python that has python/tests/requirements.txt in CREPITUS_PYTHON"
+            );
+            eprintln!("left out: {missing}");
             continue;
         }
         let output = Command::new(&python)
@@ -581,7 +646,7 @@ fn memory_does_not_grow_with_the_recording() {
             "report",
             text(&file),
             "--out",
-            text(&home.path().join("report")),
+            text(&home.path().join(format!("report-{duration}"))),
         ]));
         println!("report of {duration}: {}", all[4]);
         highest.push(all);

@@ -5,8 +5,8 @@ mod support;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use std::process::{Output, Stdio};
-use support::{crepitus, names, stderr, stdout, summary};
+use std::process::{Command, Output, Stdio};
+use support::{crepitus, names, repository, stderr, stdout, summary};
 
 fn run_in(home: &Path, arguments: &[&str]) -> Output {
     crepitus()
@@ -225,6 +225,110 @@ fn a_folder_keeps_its_run() {
         said.contains("bench.svg, ") && said.contains("torque.svg"),
         "{said}"
     );
+}
+
+#[test]
+fn a_numbered_folder_stands_beside_the_wanted_one() {
+    let home = tempfile::tempdir().unwrap();
+    let home = home.path();
+    let run = |duration: &str, out: &str, folder: &Path| {
+        let duration = format!("duration_s={duration}");
+        run_in(
+            folder,
+            &["fig6-ideal-cycle", "--set", &duration, "--out", out],
+        )
+    };
+    // A shell completes the name with a slash.
+    for (duration, folders) in [("0.1", &["x"][..]), ("0.2", &["x", "x-2"])] {
+        let output = run(duration, "x/", home);
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert_eq!(names(home), folders);
+    }
+    let inside = home.join("x");
+    let files = names(&inside);
+    // The same run again, and another one: there is no name to number.
+    assert!(run("0.1", ".", &inside).status.success());
+    let output = run("0.2", ".", &inside);
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(said.contains("no name to add a number to"), "{said}");
+    assert_eq!((names(home).len(), names(&inside)), (2, files));
+}
+
+/// The build script, in a repository of its own with a program that prints what it has set.
+#[test]
+fn an_edit_after_a_clean_build_is_in_the_name_of_the_commit() {
+    let home = tempfile::tempdir().unwrap();
+    let root = home.path();
+    let tool = root.join("host/tool");
+    fs::create_dir_all(tool.join("src")).unwrap();
+    fs::create_dir(root.join("model")).unwrap();
+    let manifest =
+        "[package]\nname = \"named\"\nversion = \"0.1.0\"\nedition = \"2024\"\n[workspace]\n";
+    let program = "fn main() { print!(\"{}\", env!(\"CREPITUS_COMMIT\")) }";
+    fs::write(tool.join("Cargo.toml"), manifest).unwrap();
+    fs::write(tool.join("src/main.rs"), program).unwrap();
+    fs::write(root.join("model/lib.rs"), "").unwrap();
+    fs::copy(
+        repository().join("host/tool/build.rs"),
+        tool.join("build.rs"),
+    )
+    .unwrap();
+    let done = |program: &str, arguments: &[&str]| {
+        let output = Command::new(program)
+            .args(arguments)
+            .current_dir(root)
+            .env("GIT_CONFIG_GLOBAL", "/dev/null")
+            .env_remove("GIT_DIR")
+            .env_remove("CREPITUS_COMMIT")
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", stderr(&output));
+        stdout(&output)
+    };
+    let commit = || {
+        done("git", &["add", "host", "model"]);
+        let author = ["-c", "user.name=a", "-c", "user.email=a"];
+        done(
+            "git",
+            &[&author[..], &["commit", "--quiet", "--message", "a"]].concat(),
+        );
+    };
+    let built = || {
+        let manifest = "--manifest-path=host/tool/Cargo.toml";
+        let place = "--target-dir=target";
+        done(
+            env!("CARGO"),
+            &["run", "--quiet", "--offline", manifest, place],
+        )
+    };
+    done("git", &["init", "--quiet"]);
+    commit();
+    let first = built();
+    assert!(!first.is_empty() && !first.ends_with("-dirty"), "{first}");
+    fs::write(root.join("model/lib.rs"), "// Edited.\n").unwrap();
+    assert_eq!(built(), format!("{first}-dirty"));
+    commit();
+    let second = built();
+    assert!(second != first && !second.ends_with("-dirty"), "{second}");
+}
+
+/// Otherwise an edit of a package would not be seen.
+#[test]
+fn the_build_script_watches_every_package_of_the_program() {
+    let script = fs::read_to_string(repository().join("host/tool/build.rs")).unwrap();
+    let manifest = fs::read_to_string(repository().join("Cargo.toml")).unwrap();
+    let paths: Vec<_> = (manifest.lines())
+        .filter_map(|line| line.split_once("{ path = \"")?.1.split('"').next())
+        .collect();
+    assert!(paths.len() > 20, "{paths:?}");
+    for path in paths {
+        let mut folders = Path::new(path).ancestors();
+        assert!(
+            folders.any(|folder| script.contains(&format!("\"{}\",", folder.display()))),
+            "{path}"
+        );
+    }
 }
 
 #[test]

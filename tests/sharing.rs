@@ -362,7 +362,7 @@ fn a_program_that_serves_and_hangs_is_named() {
     });
     signal(&serving, "-STOP");
     let stop = served.run(&["stop"]);
-    assert_eq!(stop.status.code(), Some(2));
+    assert_eq!(stop.status.code(), Some(1));
     let text = stderr(&stop);
     assert!(
         text.contains("does not respond") && text.contains(&serving.id().to_string()),

@@ -3,11 +3,33 @@
 use std::path::Path;
 use std::process::Command;
 
+/// What the name depends on: each commit and each checkout adds a line to the log of `HEAD`, and an
+/// edit of what the program is built from makes it dirty. The index is left out: `git describe`
+/// itself writes it, so that every second build would be done twice.
+const INPUTS: [&str; 14] = [
+    ".git/logs/HEAD",
+    "Cargo.lock",
+    "Cargo.toml",
+    "device",
+    "docs/faults.md",
+    "host",
+    "lessons",
+    "model",
+    "presets",
+    "protocol",
+    "scenes",
+    "sim",
+    "table",
+    "tools/image",
+];
+
 fn main() {
-    // Each commit and each checkout adds a line to this file.
-    let log = "../../.git/logs/HEAD";
-    if Path::new(log).exists() {
-        println!("cargo::rerun-if-changed={log}");
+    for input in INPUTS {
+        let path = Path::new("../..").join(input);
+        // One that is missing would run this in every build.
+        if path.exists() {
+            println!("cargo::rerun-if-changed={}", path.display());
+        }
     }
     let described = Command::new("git")
         .args([

@@ -98,6 +98,18 @@ pub(crate) struct Counts {
     pub(crate) unread_blocks: u64,
 }
 
+/// Samples that are always under way, at most: 100 ms of them.
+const UNDER_WAY: u64 = 2_000;
+
+/// Telemetry that had stopped while the device went on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unheard {
+    /// For how long nothing has come.
+    pub silence: Duration,
+    /// How many samples the device has produced since the last one that came; none if it does not answer.
+    pub samples: Option<u64>,
+}
+
 /// Counters of a client.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
@@ -218,6 +230,23 @@ impl<T: Transport> Client<T> {
         if self.telemetry.is_subscribed && self.is_connected() {
             let _gone = self.unsubscribe();
         }
+    }
+
+    /// What the device has produced and nobody has heard, if that is more than what is always under way.
+    /// A program that passes everything on may hang while the device goes on.
+    pub fn unheard(&mut self) -> Option<Unheard> {
+        let next_tick = self.accounting()?.next_tick();
+        if !self.telemetry.is_subscribed {
+            return None;
+        }
+        let silence = self.now().saturating_sub(self.telemetry.heard_at);
+        let status = if self.is_connected() {
+            self.status().ok()
+        } else {
+            None
+        };
+        let samples = status.map(|status| status.tick.saturating_sub(next_tick));
+        (samples.is_none_or(|samples| samples > UNDER_WAY)).then_some(Unheard { silence, samples })
     }
 
     /// Whether the connection is open.

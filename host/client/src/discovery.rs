@@ -153,16 +153,47 @@ fn is_stale_in(folder: &Path, port: &Path) -> bool {
     unserved_in(folder, port) == Some(Standing::Ended)
 }
 
+/// Which pseudo-terminal this port is, if it is one and does not lead there by the link of a simulated device.
+/// When its program has ended, its name may be given to anybody's terminal: that is another one.
+#[cfg(unix)]
+pub fn pseudo_terminal(port: &Path) -> Option<PseudoTerminal> {
+    use std::os::unix::fs::MetadataExt;
+    let path = fs::canonicalize(port).ok()?;
+    if !path.starts_with("/dev/pts") || !simulated_links(&simulated_folder(), port).is_empty() {
+        return None;
+    }
+    let node = fs::metadata(&path).ok()?;
+    Some(PseudoTerminal(node.rdev(), node.ctime(), node.ctime_nsec()))
+}
+
+/// The same: other systems have none that we serve.
+#[cfg(not(unix))]
+pub fn pseudo_terminal(_: &Path) -> Option<PseudoTerminal> {
+    None
+}
+
+/// A pseudo-terminal: its number, and when its node was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PseudoTerminal(u64, i64, i64);
+
 /// What is behind the first link on the way from this port that is one of a simulated device, and
 /// not served.
 fn unserved_in(folder: &Path, port: &Path) -> Option<Standing> {
+    let links = simulated_links(folder, port);
+    let mut standings = links.iter().map(|link| name::standing(link));
+    standings.find(|standing| *standing != Standing::Served)
+}
+
+/// The links on the way from this port that are of simulated devices.
+fn simulated_links(folder: &Path, port: &Path) -> Vec<PathBuf> {
     /// Links that lead to links; the system follows 40.
     const MOST_LINKS: usize = 40;
     let folder = fs::canonicalize(folder).ok();
     let mut path = port.to_path_buf();
+    let mut found = Vec::new();
     for _ in 0..MOST_LINKS {
         let Ok(target) = fs::read_link(&path) else {
-            return None;
+            break;
         };
         let parent = match path.parent() {
             Some(parent) if parent != Path::new("") => parent.to_path_buf(),
@@ -170,14 +201,11 @@ fn unserved_in(folder: &Path, port: &Path) -> Option<Standing> {
         };
         let is_there = folder.is_some() && fs::canonicalize(&parent).ok() == folder;
         if is_there || name::has_lock(&path) {
-            let standing = name::standing(&path);
-            if standing != Standing::Served {
-                return Some(standing);
-            }
+            found.push(path);
         }
         path = parent.join(target);
     }
-    None
+    found
 }
 
 #[cfg(test)]

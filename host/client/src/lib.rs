@@ -72,7 +72,7 @@ pub mod values;
 mod wire;
 
 pub use accounting::{Accounting, Begin, Gap, Taken};
-pub use client::{Client, Tally};
+pub use client::{Client, Tally, Unheard};
 pub use errors::{Conflict, Error};
 pub use event::{Arrival, Event, StateChange};
 pub use faults::{coil_fault_text, fault_text};

@@ -109,6 +109,14 @@ pub enum TransportError {
         /// Error of the system.
         detail: String,
     },
+    /// Programs cannot meet at the port: the folder of their socket cannot be used.
+    #[error("cannot open {port}: it cannot be shared with other programs: {detail}")]
+    Unshared {
+        /// The port.
+        port: String,
+        /// Error of the system.
+        detail: String,
+    },
     /// Timeout of sending.
     #[error(
         "timeout: {port} accepts no bytes for {} ms, the device hangs; unplug it and plug it in again",
@@ -122,7 +130,10 @@ pub enum TransportError {
     },
     /// The device has restarted, or more programs are connected than it can
     /// remember.
-    #[error("{port}: the device does not know this session any more: it has restarted, or more than 32 programs are connected to it")]
+    #[error(
+        "{port}: the device does not know this session any more: it has restarted, or more than 32 programs are \
+         connected to it"
+    )]
     Forgotten {
         /// The port.
         port: String,

@@ -3,7 +3,7 @@
 use crate::open_error::OpenError;
 use crate::simulated::Simulated;
 use crepitus_client::discovery::{self, Device, DeviceKind};
-use crepitus_client::{Transport, TransportError};
+use crepitus_client::{Serial, Transport, TransportError};
 use crepitus_scene::{Scene, SceneError};
 use crepitus_sharing::{Program, Shared};
 use std::path::Path;
@@ -18,6 +18,8 @@ const EMULATED: &str = "emulated";
 pub enum Connection {
     /// At a port.
     Shared(Box<Shared>),
+    /// At a port that cannot be shared, for a stop.
+    Alone(Box<Serial>),
     /// In this process.
     Simulated(Box<Simulated>),
 }
@@ -43,13 +45,24 @@ impl Connection {
                 let scene = scene().map_err(OpenError::Scene)?;
                 Simulated::emulated(&scene).map_err(OpenError::Emulated)?
             }
-            Some(name) => return serial(&port(name, simulated_devices)?, program),
-            None => {
-                let devices = discovery::devices().map_err(OpenError::Discovery)?;
-                return serial(&only_port(&devices)?, program);
-            }
+            name => return serial(&port_of(name)?, program),
         };
         Ok(Self::Simulated(Box::new(simulated)))
+    }
+
+    /// Opens a port for what has to work even where programs cannot meet, as with a full disk: a stop. Then
+    /// it is opened without serving it, which fails if another program has it.
+    ///
+    /// # Errors
+    /// As of [`Self::open`].
+    pub fn open_to_stop(name: Option<&str>, program: &str) -> Result<Self, OpenError> {
+        let port = port_of(name)?;
+        serial(&port, program).or_else(|error| match error {
+            OpenError::Transport(TransportError::Unshared { .. }) => Serial::open(&port)
+                .map(|serial| Self::Alone(Box::new(serial)))
+                .map_err(OpenError::Transport),
+            error => Err(error),
+        })
     }
 
     /// The ports of all devices that are attached.
@@ -65,7 +78,7 @@ impl Connection {
     pub fn in_real_time(self) -> Self {
         match self {
             Self::Simulated(simulated) => Self::Simulated(Box::new(simulated.in_real_time())),
-            shared @ Self::Shared(_) => shared,
+            at_a_port => at_a_port,
         }
     }
 
@@ -74,13 +87,14 @@ impl Connection {
     pub fn programs(&mut self) -> Vec<Program> {
         match self {
             Self::Shared(shared) => shared.programs().unwrap_or_default(),
-            Self::Simulated(_) => Vec::new(),
+            Self::Alone(_) | Self::Simulated(_) => Vec::new(),
         }
     }
 
     fn transport(&self) -> &dyn Transport {
         match self {
             Self::Shared(shared) => &**shared,
+            Self::Alone(serial) => &**serial,
             Self::Simulated(simulated) => &**simulated,
         }
     }
@@ -88,6 +102,7 @@ impl Connection {
     fn transport_mut(&mut self) -> &mut dyn Transport {
         match self {
             Self::Shared(shared) => &mut **shared,
+            Self::Alone(serial) => &mut **serial,
             Self::Simulated(simulated) => &mut **simulated,
         }
     }
@@ -133,6 +148,14 @@ fn port(name: &str, offered: impl FnOnce() -> Vec<Device>) -> Result<String, Ope
         .ok_or_else(|| OpenError::Unknown {
             name: name.to_owned(),
         })
+}
+
+/// The port of this name, or of the only device.
+fn port_of(name: Option<&str>) -> Result<String, OpenError> {
+    match name {
+        Some(name) => port(name, simulated_devices),
+        None => only_port(&discovery::devices().map_err(OpenError::Discovery)?),
+    }
 }
 
 fn simulated_devices() -> Vec<Device> {

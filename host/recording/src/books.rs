@@ -11,9 +11,13 @@
 //! beyond that was lost after it.
 
 mod recount;
+#[cfg(feature = "parquet")]
+mod row_count;
 
 use crepitus_protocol::telemetry::Block;
 pub(crate) use recount::Recount;
+#[cfg(feature = "parquet")]
+pub(crate) use row_count::RowCount;
 use serde::{Deserialize, Serialize};
 
 /// Limit of listed gaps; further ones are only counted.

@@ -46,7 +46,7 @@ pub use metadata::{Controller, Metadata};
 pub use parameters::{History, InForce, Named, ParameterSet, named_values};
 pub use recording::{Damage, Format, ReadError, Recording, Rows, seconds};
 pub use report_columns::ReportColumns;
-pub use row::{COLUMNS, Row};
+pub use row::{COLUMNS, Row, Step};
 pub use samples::Samples;
 
 use std::fs::File;

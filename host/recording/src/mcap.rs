@@ -10,9 +10,8 @@
 //! Times are those of the recording's begin plus the time of the row.
 
 use crate::parameters::Named;
-use crate::recording::{ReadError, Recording};
-use crate::row::Row;
-use crepitus_protocol::TICK_S;
+use crate::recording::{ReadError, Recording, seconds};
+use crate::row::{Row, Step};
 use mcap::records::MessageHeader;
 use mcap::{McapError, WriteOptions, Writer};
 use serde_json::{Value, json};
@@ -296,6 +295,21 @@ impl<'f> Messages<'f> {
         Ok(())
     }
 
+    /// Logs missing samples or a restart between two rows; no millisecond reaches across.
+    fn step(&mut self, bin: &mut Bin, before: &Row, row: &Row) -> io::Result<()> {
+        let text = match row.step_from(before) {
+            Step::Next => return Ok(()),
+            Step::Missing(samples) => format!(
+                "samples of {:.4} s are missing before tick {}",
+                seconds(samples),
+                row.tick
+            ),
+            Step::Restart => "the drive has restarted; how long that took is not known".to_owned(),
+        };
+        self.bin(bin)?;
+        self.log(row.time_s, WARNING, &text)
+    }
+
     fn event(&mut self, row: &Row) -> io::Result<()> {
         let event = row.event();
         if event.is_empty() {
@@ -341,16 +355,8 @@ pub(crate) fn write(
         while let Some(set) = sets.next_if(|set| set.first_row <= count) {
             messages.parameters(row.time_s, set.revision, set.values.as_ref())?;
         }
-        if let Some(before) = before
-            && (row.tick != before.tick + 1)
-        {
-            messages.bin(&mut bin)?;
-            let missing_s = row.time_s - before.time_s - TICK_S;
-            let text = format!(
-                "samples of {missing_s:.4} s are missing before tick {}",
-                row.tick
-            );
-            messages.log(row.time_s, WARNING, &text)?;
+        if let Some(before) = before {
+            messages.step(&mut bin, &before, &row)?;
         }
         messages.event(&row)?;
         bin.add(&row);

@@ -78,18 +78,25 @@ impl Metadata {
             comms: comms.into(),
             drive: drive.map(Controller::from),
             ticks_per_s: TICKS_PER_S,
-            columns: crate::row::COLUMNS
-                .iter()
-                .map(|(name, meaning)| ((*name).to_owned(), json!(meaning)))
-                .collect(),
+            columns: columns(),
         }
     }
 
-    /// That of a recording whose header is damaged.
+    /// That of a recording whose header is damaged. What every recording of this format has is
+    /// known all the same.
     pub(crate) fn unknown() -> Self {
         Self {
             title: "A recording whose header is damaged".to_owned(),
+            ticks_per_s: TICKS_PER_S,
+            columns: columns(),
             ..Self::default()
         }
     }
+}
+
+fn columns() -> Map<String, Value> {
+    crate::row::COLUMNS
+        .iter()
+        .map(|(name, meaning)| ((*name).to_owned(), json!(meaning)))
+        .collect()
 }

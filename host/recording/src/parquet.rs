@@ -24,6 +24,7 @@ use crate::books::Books;
 use crate::metadata::Metadata;
 use crate::parameters::History;
 use parquet::errors::ParquetError;
+use parquet::file::metadata::ParquetMetaData;
 pub(crate) use reader::{ParquetRows, Reader};
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -64,6 +65,13 @@ fn sum_place(footer: &[u8]) -> Option<usize> {
     // Behind the key: the next field's type, and its length.
     let value = at + key.len() + 2;
     (value + NO_SUM.len() <= footer.len()).then_some(value)
+}
+
+/// A value in a footer's metadata.
+fn value<'f>(footer: &'f ParquetMetaData, key: &str) -> Option<&'f str> {
+    let pairs = footer.file_metadata().key_value_metadata()?;
+    let pair = pairs.iter().find(|pair| pair.key == key)?;
+    pair.value.as_deref()
 }
 
 /// An error of the library.

@@ -51,7 +51,10 @@ pub enum ReadError {
     )]
     NoParquet(PathBuf),
     /// The file is not what was written.
-    #[error("{path}: damaged:{findings}\nall that is readable is kept with `--salvage`")]
+    #[error(
+        "{path}: damaged:{findings}\nwith `--salvage` all that is readable is kept, and samples that \
+         are out of order are put in order"
+    )]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -114,7 +117,7 @@ impl Recording {
             .map_err(failed)?
             .ok_or_else(|| ReadError::Foreign(path.to_owned()))?;
         let recording = match format {
-            Format::Log => Self::log(path).map_err(failed)?,
+            Format::Log => Self::log(path, damage).map_err(failed)?,
             #[cfg(feature = "parquet")]
             Format::Parquet => Self::parquet(path).map_err(failed)?,
             #[cfg(not(feature = "parquet"))]
@@ -136,9 +139,9 @@ impl Recording {
         Ok(recording)
     }
 
-    fn log(path: &Path) -> io::Result<Self> {
+    fn log(path: &Path, damage: Damage) -> io::Result<Self> {
         let file = File::open(path)?;
-        let scanned = reader::scan(&file)?;
+        let scanned = reader::scan(&file, damage)?;
         Ok(Self {
             path: path.to_owned(),
             metadata: scanned.metadata,

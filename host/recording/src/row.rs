@@ -1,6 +1,8 @@
 //! A sample as a line of CSV.
 
+use crate::recording::seconds;
 use crepitus_model::render::effects::Phases;
+use crepitus_protocol::TICK_S;
 use crepitus_protocol::telemetry::SampleFlags;
 use serde_json::{Map, Number, Value};
 use std::fmt::Write as _;
@@ -71,6 +73,17 @@ pub struct Row {
     pub phases: Phases,
 }
 
+/// What lies between a row and the one before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Nothing: the next tick.
+    Next,
+    /// So many missing samples.
+    Missing(u64),
+    /// A restart of the drive: how long it took is not known.
+    Restart,
+}
+
 /// The columns of text; the others are numbers.
 const WORDS: [&str; 4] = ["phase", "event", "limit", "notes"];
 
@@ -83,6 +96,19 @@ pub(crate) const NOTES: [(u16, &str); 4] = [
 ];
 
 impl Row {
+    /// The step from the row before it.
+    pub fn step_from(&self, before: &Self) -> Step {
+        let passed_s = self.time_s - before.time_s;
+        match self.tick.checked_sub(before.tick) {
+            // Time goes on at once where the drive restarted, its ticks do not go on with it.
+            Some(ticks @ 1..) if (passed_s - seconds(ticks)).abs() < 0.5 * TICK_S => match ticks {
+                1 => Step::Next,
+                _ => Step::Missing(ticks - 1),
+            },
+            _ => Step::Restart,
+        }
+    }
+
     /// Appends it as a line; numbers read back to the same bits.
     pub fn append_to(&self, line: &mut String) {
         let mut numbers = ryu::Buffer::new();
@@ -166,6 +192,26 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_restart_is_no_missing_samples_whether_ticks_go_back_or_not() {
+        let row = |tick, time_ticks| Row {
+            tick,
+            time_s: seconds(time_ticks),
+            ..Row::default()
+        };
+        let before = row(5_000, 72_000_000);
+        for (after, step) in [
+            (row(5_001, 72_000_001), Step::Next),
+            (row(5_002, 72_000_002), Step::Missing(1)),
+            (row(9_000, 72_004_000), Step::Missing(3_999)),
+            (row(20, 72_000_001), Step::Restart),
+            (row(5_000, 72_000_001), Step::Restart),
+            (row(8_000, 72_000_001), Step::Restart),
+        ] {
+            assert_eq!(after.step_from(&before), step, "tick {}", after.tick);
+        }
+    }
 
     #[test]
     fn an_object_has_the_names_and_numbers_of_a_line() {

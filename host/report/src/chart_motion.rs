@@ -185,10 +185,13 @@ fn words(figures: &Figures, lines: &Lines) -> (Vec<Key>, String) {
         caption.push_str(" At the bottom: how far each is ahead of the shaft.");
     }
     if !figures.gaps.is_empty() {
-        caption.push_str(" Blank between dotted lines: samples are missing there.");
+        caption.push_str(" Blank between dotted lines: samples are missing there, or the drive restarted; how long \
+             that took is not known.");
     }
     if !figures.marks.is_empty() {
-        caption.push_str(" Dotted lines: from there on other parameters were in force.");
+        caption.push_str(
+            " Dotted lines: from there on other parameters were in force, or the drive had restarted.",
+        );
     }
     (legend, caption)
 }

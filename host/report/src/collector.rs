@@ -76,7 +76,7 @@ pub struct Figures {
     pub(crate) plant: Option<Plant>,
     pub(crate) symptoms: Option<Symptoms>,
     pub(crate) balance: Option<Balance>,
-    /// When parameters changed.
+    /// When parameters changed, or the device restarted.
     pub(crate) marks: Vec<Mark>,
     /// When the motor was pushed to arm it, s.
     pub(crate) pushes: Vec<(f64, f64)>,
@@ -97,8 +97,8 @@ impl Figures {
         self.balance = Some(balance);
     }
 
-    /// Draws on a panel over time where rows are missing and when parameters
-    /// changed, after the lines; the first panel of a chart names the changes, by
+    /// Draws on a panel over time where rows are missing and the marked moments,
+    /// after the lines; the first panel of a chart names the moments, by
     /// [`Panel::moments`](crepitus_plot::Panel::moments).
     pub(crate) fn draw_marks(&self, plot: &mut Plot) {
         plot.blank(&self.gaps);
@@ -234,8 +234,8 @@ impl Collector {
         }
     }
 
-    /// Marks a moment on every chart over time: parameters changed, for
-    /// example.
+    /// Marks a moment on every chart over time: parameters changed, or the
+    /// device restarted.
     pub fn mark(&mut self, mark: Mark) {
         self.marks.push(mark);
     }
@@ -246,8 +246,8 @@ impl Collector {
         self.pushes.push((from_s, to_s));
     }
 
-    /// Rows between these times, s, are missing; the next row is the one after
-    /// them.
+    /// Rows between these times, s, are missing, or the device restarted between them; the next
+    /// row is the one after them.
     pub fn gap(&mut self, from_s: f64, to_s: f64) {
         if self.gaps.len() < GAPS {
             self.gaps.push((from_s, to_s));

@@ -8,7 +8,8 @@ use crate::link::Link;
 use crate::note::{Note, Program};
 use crate::place::Place;
 use crate::socket::connect;
-use crepitus_client::{Serial, Transport, TransportError, discovery};
+use crepitus_client::discovery::{self, PseudoTerminal, pseudo_terminal};
+use crepitus_client::{Serial, Transport, TransportError};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 use std::thread;
@@ -29,6 +30,8 @@ const ANSWER: Duration = Duration::from_millis(500);
 #[derive(Debug)]
 pub struct Shared {
     port: String,
+    /// Which it was when it was opened first.
+    terminal: Option<PseudoTerminal>,
     program: Program,
     /// Its subscription and lease, which it tells the next hub.
     sent: Frames,
@@ -51,6 +54,7 @@ impl Shared {
     pub fn open(port: &str, name: &str) -> Result<Self, TransportError> {
         let mut shared = Self {
             port: port.to_owned(),
+            terminal: pseudo_terminal(Path::new(port)),
             program: Program::this(name),
             sent: Frames::default(),
             open: LeftOpen::default(),
@@ -106,7 +110,9 @@ impl Shared {
         if self.hub.as_ref().is_some_and(Hub::is_over) {
             self.hub = None;
         }
-        if discovery::is_stale(Path::new(&self.port)) {
+        let is_another =
+            self.terminal.is_some() && pseudo_terminal(Path::new(&self.port)) != self.terminal;
+        if is_another || discovery::is_stale(Path::new(&self.port)) {
             return Err(TransportError::NotFound {
                 port: self.port.clone(),
             });
@@ -197,9 +203,9 @@ impl Shared {
     }
 
     fn cannot_meet(&self, error: &io::Error) -> TransportError {
-        TransportError::Open {
+        TransportError::Unshared {
             port: self.port.clone(),
-            detail: format!("it cannot be shared with other programs: {error}"),
+            detail: error.to_string(),
         }
     }
 }

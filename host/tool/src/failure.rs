@@ -1,10 +1,11 @@
 //! Failures of verbs: the message and the exit code.
 
+use crate::output::{to_stderr, to_stdout};
 use crate::safe_text::{message, visible};
 use crepitus_scene::SceneError;
 use serde_json::{Map, Value, json};
 use std::fmt::Display;
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -19,7 +20,7 @@ pub(crate) enum Failure {
     Kept(String, Map<String, Value>),
     /// The work was done and its result is negative: no message, exit code 1.
     Negative,
-    /// The reader of stdout has closed it: no message, exit code 1.
+    /// The reader of stdout has closed it, or reads nothing while a stop is requested: no message, exit code 1.
     NoReader,
 }
 
@@ -83,7 +84,7 @@ impl Failure {
         };
         if !printed {
             // Without anybody who reads, the exit code tells.
-            let _ = writeln!(io::stderr(), "error: {text}");
+            to_stderr(&format!("error: {text}"));
         }
         ExitCode::from(code)
     }
@@ -91,7 +92,7 @@ impl Failure {
 
 /// Prints a warning to stderr.
 pub(crate) fn warn(warning: impl Display) {
-    let _ = writeln!(io::stderr(), "warning: {}", message(&warning.to_string()));
+    to_stderr(&format!("warning: {}", message(&warning.to_string())));
 }
 
 /// Writes text to stdout; a closed reader is a failure, not a panic.
@@ -100,14 +101,10 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 }
 
 fn write(text: &str) -> Result<(), Failure> {
-    use io::Write;
-    let mut out = io::stdout().lock();
-    out.write_all(text.as_bytes())
-        .and_then(|()| out.flush())
-        .map_err(|error| match error.kind() {
-            io::ErrorKind::BrokenPipe => Failure::NoReader,
-            _ => Failure::Work(format!("stdout cannot be written: {error}")),
-        })
+    to_stdout(text).map_err(|error| match error.kind() {
+        io::ErrorKind::BrokenPipe => Failure::NoReader,
+        _ => Failure::Work(format!("stdout cannot be written: {error}")),
+    })
 }
 
 /// Writes JSON and a newline to stdout.

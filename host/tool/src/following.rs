@@ -7,12 +7,12 @@
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::line::{Line, failure, failure_with};
+use crate::output::to_stderr;
 use clap::Args;
-use crepitus_client::{Begin, Client, Event};
+use crepitus_client::{Begin, Client, Error, Event};
 use crepitus_connection::device_text;
 use crepitus_protocol::State;
 use crepitus_protocol::telemetry::Block;
-use std::io::{self, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::Duration;
 
@@ -49,8 +49,7 @@ pub(crate) trait Follower {
 
     /// Tells the user that something has happened.
     fn tell(&mut self, text: &str) {
-        // Without anybody who reads, what is done goes on.
-        let _ = writeln!(io::stderr(), "{text}");
+        to_stderr(text);
     }
 }
 
@@ -171,7 +170,9 @@ fn run(
                         "warning: {error}; reconnecting for up to {} s",
                         RECONNECT_TIMEOUT.as_secs()
                     ));
-                    reconnect(client, arm, follower)?;
+                    if !reconnect(client, arm, follower)? {
+                        return Ok(End::Requested);
+                    }
                     break;
                 }
                 _ => {}
@@ -202,12 +203,22 @@ fn disarmed(client: &mut Client<Line>) -> Failure {
     })
 }
 
+/// Opens the connection again; false if a stop was requested first.
 fn reconnect(
     client: &mut Client<Line>,
     arm: bool,
     follower: &mut impl Follower,
-) -> Result<(), Failure> {
-    let back = client.reconnect(RECONNECT_TIMEOUT).map_err(failure)?;
+) -> Result<bool, Failure> {
+    let until = client.now() + RECONNECT_TIMEOUT;
+    let back = loop {
+        match client.reconnect(POLL_TIMEOUT) {
+            Ok(back) => break back,
+            Err(_) if interrupt::requested() => return Ok(false),
+            Err(error @ Error::Mismatch(_)) => return Err(failure(error)),
+            Err(error) if client.now() >= until => return Err(failure(error)),
+            Err(_) => {}
+        }
+    };
     follower.tell("reconnected");
     if let Some(resubscribed) = back.resubscribed {
         follower.resumed(resubscribed.begin)?;
@@ -219,7 +230,7 @@ fn reconnect(
                 .to_owned(),
         ));
     }
-    Ok(())
+    Ok(true)
 }
 
 #[cfg(test)]

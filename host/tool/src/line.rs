@@ -2,9 +2,9 @@
 
 use crate::cli::DeviceArguments;
 use crate::failure::Failure;
-use crepitus_client::{Client, Error, Management, RequestKind};
+use crepitus_client::{Client, Error, Management, RequestKind, TransportError};
 pub(crate) use crepitus_connection::Connection as Line;
-use crepitus_connection::{is_in_this_process, is_input};
+use crepitus_connection::{OpenError, is_in_this_process, is_input};
 use crepitus_protocol::Session;
 use crepitus_protocol::host::Refusal;
 use crepitus_scene::{Overrides, shipped};
@@ -28,7 +28,25 @@ pub(crate) fn open(arguments: &DeviceArguments) -> Result<Line, Failure> {
     }
     let scene = arguments.scene.as_deref().unwrap_or(Path::new(SCENE));
     let scene = || shipped::scene(scene, &Overrides::default());
-    Line::open(device, &command_line(), scene).map_err(Failure::input)
+    Line::open(device, &command_line(), scene).map_err(not_open)
+}
+
+/// Opens it for a stop, also where it cannot be shared.
+pub(crate) fn manage_to_stop(arguments: &DeviceArguments) -> Result<Management<Line>, Failure> {
+    let device = arguments.device.as_deref();
+    if device.is_some_and(is_in_this_process) {
+        return manage(arguments);
+    }
+    let line = Line::open_to_stop(device, &command_line()).map_err(not_open)?;
+    Ok(Management::new(line))
+}
+
+/// That a program hangs is no mistake of the user's.
+fn not_open(error: OpenError) -> Failure {
+    match error {
+        OpenError::Transport(TransportError::Hangs { .. }) => Failure::Work(error.to_string()),
+        error => Failure::input(error),
+    }
 }
 
 /// The same; a device in this process is not faster than real time.

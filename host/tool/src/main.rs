@@ -8,6 +8,7 @@ mod following;
 mod interrupt;
 mod keys;
 mod line;
+mod output;
 mod overlay;
 mod own_presets;
 mod pictures;

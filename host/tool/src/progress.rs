@@ -1,5 +1,6 @@
 //! A progress bar for work that takes over a second, on a terminal only.
 
+use crate::output::stderr_is_ready;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::{Duration, Instant};
 
@@ -55,7 +56,7 @@ impl Progress {
 
     /// The simulation has reached `time_s`.
     pub(crate) fn reached(&mut self, time_s: f64) {
-        if self.begun.elapsed() < SHOW_AFTER {
+        if self.begun.elapsed() < SHOW_AFTER || !stderr_is_ready() {
             return;
         }
         let milliseconds = |s: f64| Duration::from_secs_f64(s.max(0.0)).as_millis();
@@ -80,6 +81,9 @@ impl Progress {
 impl Drop for Progress {
     fn drop(&mut self) {
         if let Some(bar) = &self.bar {
+            if !stderr_is_ready() {
+                bar.set_draw_target(ProgressDrawTarget::hidden());
+            }
             bar.finish_and_clear();
         }
     }

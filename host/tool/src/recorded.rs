@@ -76,6 +76,12 @@ impl Recorded {
         in_final_format(&file, &self.id)?;
         Ok(Some(totals))
     }
+
+    /// Leaves the file without an end: more was produced than is in it.
+    pub(crate) fn leave(mut self) -> Result<Totals, Failure> {
+        self.recorder.flush().map_err(stopped)?;
+        Ok(self.recorder.totals())
+    }
 }
 
 /// There is no file to record into.
@@ -234,13 +240,25 @@ fn exists(out: &Path) -> Failure {
 pub(crate) fn print_ended(file: &Path, totals: &Totals) -> Result<(), Failure> {
     print(&format!(
         "{}: {} samples produced = {} received + {} dropped\n\
-         write its report with `crepitus report {}`\n",
+         write its report with `{}`\n",
         file.display(),
         totals.produced,
         totals.received,
         totals.dropped,
-        shell::word(file)
+        report_command(file)
     ))
+}
+
+/// The command that writes the report of a recording.
+pub(crate) fn report_command(file: &Path) -> String {
+    let command = format!("crepitus report {}", shell::word(file));
+    // The folder's name is longer than the file's, which may have the greatest length already.
+    let folder = fs::symlink_metadata(beside(file, "-report"));
+    if folder.is_err_and(|error| error.kind() == ErrorKind::InvalidFilename) {
+        command + " --out report"
+    } else {
+        command
+    }
 }
 
 /// A file beside a recording: its whole name, and more.

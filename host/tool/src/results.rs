@@ -1,18 +1,25 @@
 //! The files that a run, a study or a recording's report leaves.
 
 use crate::failure::{Failure, warn};
+use crate::recorded::beside;
 use crepitus_plot::{Figure, pictures};
 use crepitus_scene::Scene;
 use crepitus_scene::output::Folder;
 use serde::Serialize;
 use serde_json::Value;
 use std::ffi::{OsStr, OsString};
-use std::fs;
-use std::io::{ErrorKind, Write};
+use std::fs::{self, File};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// Names and contents of files.
 pub(crate) type Files = Vec<(String, Vec<u8>)>;
+
+/// Files that many results have.
+const COMMON_FILES: [&str; 4] = ["report.html", "summary.json", "trace.csv", "events.csv"];
+
+/// First bytes of recordings: of Parquet files, and of logs of any version.
+const RECORDING_HEADS: [&[u8]; 2] = [b"PAR1", b"crepitus recording "];
 
 /// The folder of the results, not yet in place. Called before the work, so
 /// that a folder without write permission fails early.
@@ -26,6 +33,18 @@ pub(crate) fn folder(out: &Path) -> Result<Folder, Failure> {
         )));
     }
     folder_of_run(out)
+}
+
+/// The same for the report of the recording with this id: other results are refused.
+pub(crate) fn folder_of_report(out: &Path, id: &str) -> Result<Folder, Failure> {
+    let prepared = folder(out)?;
+    if out.join("summary.json").exists() && summary_in(out)["id"].as_str() != Some(id) {
+        return Err(Failure::Input(format!(
+            "{} holds other results, which would be replaced: name another folder with --out, or remove it",
+            out.display()
+        )));
+    }
+    Ok(prepared)
 }
 
 /// The folder in `out` that is named after a scene's file.
@@ -45,7 +64,33 @@ pub(crate) fn named_after(scene: &Path, before: &str, after: &str) -> Result<Pat
 
 /// The same for a run.
 pub(crate) fn folder_of_run(out: &Path) -> Result<Folder, Failure> {
+    refuse_recordings(out, COMMON_FILES)?;
     Folder::create(out).map_err(|e| Failure::at(out, "cannot be written", &e))
+}
+
+/// Refuses to replace a recording that has the name of a result.
+fn refuse_recordings<'n>(
+    out: &Path,
+    names: impl IntoIterator<Item = &'n str>,
+) -> Result<(), Failure> {
+    let mut files = names.into_iter().map(|name| out.join(name));
+    let Some(file) = files.find(|file| is_recording(file)) else {
+        return Ok(());
+    };
+    Err(Failure::Input(format!(
+        "{} is a recording, and would be replaced: name another folder with --out",
+        file.display()
+    )))
+}
+
+fn is_recording(file: &Path) -> bool {
+    // Opening a pipe would wait for its writer.
+    if !file.is_file() {
+        return false;
+    }
+    let mut head = Vec::new();
+    let read = File::open(file).and_then(|file| file.take(32).read_to_end(&mut head));
+    read.is_ok() && RECORDING_HEADS.iter().any(|begin| head.starts_with(begin))
 }
 
 /// The summary that a folder has; null if there is none.
@@ -107,15 +152,20 @@ impl<'a> Identity<'a> {
     pub(crate) fn free_folder(self, wanted: &Path) -> Result<PathBuf, Failure> {
         /// More than anybody keeps.
         const MOST: u32 = 10_000;
-        (1..=MOST)
-            .map(|number| {
-                if number == 1 {
-                    return wanted.to_owned();
-                }
-                let mut name = wanted.as_os_str().to_owned();
-                name.push(format!("-{number}"));
-                PathBuf::from(name)
-            })
+        if !self.is_another_in(wanted) {
+            return Ok(wanted.to_owned());
+        }
+        // The number follows the name, not the slash that a shell completes.
+        let named: PathBuf = wanted.components().collect();
+        if named.file_name().is_none() {
+            return Err(Failure::Input(format!(
+                "{} holds another run, and this path has no name to add a number to: name another folder with \
+                 --out, or replace that run with --force",
+                wanted.display()
+            )));
+        }
+        (2..=MOST)
+            .map(|number| beside(&named, &format!("-{number}")))
             .find(|folder| !self.is_another_in(folder))
             .ok_or_else(|| {
                 Failure::Input(format!(
@@ -192,6 +242,8 @@ fn warn_of_other_pictures(folder: &Path, names: &[String]) {
 
 /// Writes files into a folder.
 fn fill(folder: &Folder, out: &Path, files: Files) -> Result<(), Failure> {
+    // Names of pictures and tables are known only now.
+    refuse_recordings(out, files.iter().map(|(name, _)| name.as_str()))?;
     for (name, content) in files {
         folder
             .file(&name)

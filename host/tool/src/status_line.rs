@@ -1,5 +1,6 @@
 //! A status line on the terminal while samples arrive.
 
+use crate::output::stderr_is_ready;
 use crepitus_client::Accounting;
 use crepitus_protocol::telemetry::Block;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -31,7 +32,7 @@ impl StatusLine {
 
     /// Updates the line.
     pub(crate) fn show(&self, accounting: Option<&Accounting>) {
-        if self.bar.is_hidden() {
+        if self.bar.is_hidden() || !stderr_is_ready() {
             return;
         }
         let (Some(block), Some(accounting)) = (&self.last, accounting) else {
@@ -50,6 +51,9 @@ impl StatusLine {
 
 impl Drop for StatusLine {
     fn drop(&mut self) {
+        if !stderr_is_ready() {
+            self.bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
         self.bar.finish_and_clear();
     }
 }

@@ -205,6 +205,23 @@ fn nonsense_is_refused_with_its_key() {
     }
 }
 
+/// The summary of the run could not name it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_recording_whose_path_is_not_utf_8_is_refused() {
+    use std::os::unix::ffi::OsStrExt;
+    let home = tempfile::tempdir().unwrap();
+    let folder = home.path().join(std::ffi::OsStr::from_bytes(b"lab\xff"));
+    std::fs::create_dir(&folder).unwrap();
+    write(&folder, "cycle.csv", 1);
+    let error = scene(&folder, "cycle.csv", 1.0, "")
+        .map(|_| ())
+        .unwrap_err();
+    for part in ["motion.file", "cycle.csv", "expected a path in UTF-8"] {
+        assert!(error.contains(part), "{error}");
+    }
+}
+
 #[test]
 fn the_scene_as_run_says_how_the_recording_was_taken() {
     let folder = tempfile::tempdir().unwrap();

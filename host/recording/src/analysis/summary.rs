@@ -14,6 +14,8 @@ use std::collections::BTreeMap;
 /// Totals of a recording: its `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct RecordingSummary {
+    /// Of the recording alone.
+    pub id: String,
     /// What was recorded, in words.
     pub title: String,
     /// Version of the program that has made this summary.
@@ -26,8 +28,11 @@ pub struct RecordingSummary {
     pub drive: Option<Controller>,
     /// Whether the recording was finished, not cut off.
     pub complete: bool,
-    /// Recorded time, s.
+    /// Recorded time, s: that of its samples.
     pub duration_s: f64,
+    /// Time from the first to the last sample, s, gaps included; a restart of the drive takes
+    /// none in it.
+    pub span_s: f64,
     /// Recorded time while armed, s.
     pub armed_s: f64,
     /// Samples produced, received and dropped.
@@ -104,6 +109,8 @@ impl Sum {
 #[derive(Debug, Default)]
 pub(super) struct Tally {
     rows: u64,
+    /// Times of the first and the last row, s.
+    ends_s: Option<(f64, f64)>,
     armed: Sum,
     asked: Sum,
     breaks: u64,
@@ -118,6 +125,8 @@ impl Tally {
     pub(super) fn row(&mut self, row: &Row) {
         let flags = row.flags;
         self.rows += 1;
+        let first_s = self.ends_s.map_or(row.time_s, |(first_s, _)| first_s);
+        self.ends_s = Some((first_s, row.time_s));
         self.fastest_rad_s = self.fastest_rad_s.max(f64::from(row.omega_rad_s.abs()));
         self.lost += u64::from(flags.has(SampleFlags::LOST));
         self.late += u64::from(flags.has(SampleFlags::LATE));
@@ -145,16 +154,12 @@ impl Tally {
                 .into_iter()
                 .map(|difference| format!("Counted in its rows: {difference}.")),
         );
-        if books.drive_restarts > 0 {
-            warnings.push(format!(
-                "The drive restarted {} times during the recording; how long each took is not known.",
-                books.drive_restarts
-            ));
-        }
+        warnings.extend(restarts(books.drive_restarts));
         if self.armed.count == 0 && self.rows > 0 {
             warnings.push("The device was never armed, so there was no torque.".to_owned());
         }
         RecordingSummary {
+            id: metadata.id.clone(),
             title: metadata.title.clone(),
             crepitus_version: env!("CARGO_PKG_VERSION"),
             begun_unix_s: metadata.begun_unix_s,
@@ -162,6 +167,9 @@ impl Tally {
             drive: metadata.drive.clone(),
             complete: recording.is_complete(),
             duration_s: seconds(self.rows),
+            span_s: self
+                .ends_s
+                .map_or(0.0, |(first_s, last_s)| last_s - first_s + TICK_S),
             armed_s: seconds(self.armed.count),
             telemetry: books.totals,
             gaps: books.gap_count,
@@ -182,4 +190,15 @@ impl Tally {
             warnings,
         }
     }
+}
+
+fn restarts(count: u32) -> Option<String> {
+    let (times, each) = match count {
+        0 => return None,
+        1 => ("once".to_owned(), "that"),
+        _ => (format!("{count} times"), "each"),
+    };
+    Some(format!(
+        "The drive restarted {times} during the recording; how long {each} took is not known."
+    ))
 }

@@ -6,6 +6,7 @@ use crate::books::{Begin, Ledger, Totals};
 use crate::findings::Findings;
 use crate::metadata::Metadata;
 use crate::parameters::{History, Named, ParameterSet, values_of};
+use crate::recording::Damage;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Source;
 use crepitus_protocol::frame::DELIMITER;
@@ -47,6 +48,8 @@ pub(crate) struct LogReader<R> {
     /// First tick of a subscription that goes back, and the tick that was due before it.
     went_back: Option<(u64, u64)>,
     is_ended: bool,
+    /// First byte of what follows the end.
+    more_from: Option<u64>,
     findings: Findings,
 }
 
@@ -75,18 +78,18 @@ pub(crate) struct Scanned {
     pub(crate) sorted: Option<File>,
 }
 
-/// Reads a whole file. Of one whose frames are out of order, a copy is made.
-pub(crate) fn scan(file: &File) -> io::Result<Scanned> {
+/// Reads a whole file. Of one whose frames are out of order, a copy is made if it is salvaged:
+/// one that is refused needs none, which takes as much disk as the file.
+pub(crate) fn scan(file: &File, damage: Damage) -> io::Result<Scanned> {
     let mut scanned = read_all(file, None)?;
     if scanned.is_disordered {
-        let sorted = repair::sorted(file)?;
-        let copy = read_all(&sorted, scanned.said)?;
-        scanned = Scanned {
-            ledger: copy.ledger,
-            history: copy.history,
-            assumed: copy.assumed,
-            sorted: Some(sorted),
-            ..scanned
+        scanned = match damage {
+            // What has to be assumed shows in their order alone.
+            Damage::Refuse => Scanned {
+                assumed: Findings::default(),
+                ..scanned
+            },
+            Damage::Salvage => put_in_order(file, scanned)?,
         };
     }
     // Said first: numbers depend on it.
@@ -94,6 +97,19 @@ pub(crate) fn scan(file: &File) -> io::Result<Scanned> {
     findings.extend(scanned.findings);
     scanned.findings = findings;
     Ok(scanned)
+}
+
+/// Reads a file again, in a copy that is in order.
+fn put_in_order(file: &File, scanned: Scanned) -> io::Result<Scanned> {
+    let sorted = repair::sorted(file, &std::env::temp_dir())?;
+    let copy = read_all(&sorted, scanned.said)?;
+    Ok(Scanned {
+        ledger: copy.ledger,
+        history: copy.history,
+        assumed: copy.assumed,
+        sorted: Some(sorted),
+        ..scanned
+    })
 }
 
 /// Reads a file, or a copy without checkpoints, of which the last one `said` this.
@@ -147,6 +163,7 @@ impl<R: BufRead> LogReader<R> {
             repeated: 0,
             went_back: None,
             is_ended: false,
+            more_from: None,
             findings,
         })
     }
@@ -197,8 +214,12 @@ impl<R: BufRead> LogReader<R> {
     fn note_damage(&mut self) {
         if let Some((offset, bytes)) = self.damage.take() {
             let tick = self.ledger.next_tick();
+            let (bytes, are) = match bytes {
+                1 => ("1 byte".to_owned(), "is"),
+                _ => (format!("{bytes} bytes"), "are"),
+            };
             self.findings.add(format!(
-                "{bytes} bytes from byte {offset} on are damaged, after tick {tick}"
+                "{bytes} from byte {offset} on {are} damaged, after tick {tick}"
             ));
             self.ledger.damaged();
             self.is_noted = true;
@@ -207,8 +228,12 @@ impl<R: BufRead> LogReader<R> {
 
     fn take(&mut self, content: Content, from: u64) -> Option<Box<Block>> {
         if self.is_ended {
-            self.findings
-                .add(format!("There is more after its end, from byte {from} on"));
+            // Once: another recording may follow, with thousands of frames.
+            if self.more_from.is_none() {
+                self.more_from = Some(from);
+                self.findings
+                    .add(format!("There is more after its end, from byte {from} on"));
+            }
             return None;
         }
         let is_own = self.owner.owns(&content);
@@ -384,8 +409,10 @@ impl<R: BufRead> LogReader<R> {
     pub(crate) fn finish(mut self) -> Scanned {
         let cut_bytes = self.damage.map_or(0, |(_, bytes)| bytes);
         if self.is_ended && cut_bytes > 0 {
-            self.findings
-                .add(format!("{cut_bytes} bytes follow its end"));
+            self.findings.add(match cut_bytes {
+                1 => "1 byte follows its end".to_owned(),
+                _ => format!("{cut_bytes} bytes follow its end"),
+            });
         }
         if self.metadata.is_none() {
             self.findings.add("Its header is missing".to_owned());
@@ -402,5 +429,53 @@ impl<R: BufRead> LogReader<R> {
             assumed: self.assumed,
             sorted: None,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::log::frame::of_block;
+    use crepitus_protocol::management::Identity;
+    use std::io::Write;
+
+    /// A log whose second block stands before its first.
+    fn disordered() -> File {
+        let header = Metadata::new("a test", &Identity::default(), None);
+        let header = Entry::Header(Box::new(header)).frame().expect("JSON");
+        let block = |first_tick| {
+            let block = Block {
+                first_tick,
+                ..Block::default()
+            };
+            of_block(&block).expect("a block fits").to_vec()
+        };
+        let mut file = tempfile::tempfile().expect("a file");
+        for bytes in [MAGIC.to_vec(), header, block(20), block(0)] {
+            file.write_all(&bytes).expect("written");
+        }
+        file
+    }
+
+    /// The disk for a copy may be full, or not there.
+    #[test]
+    fn a_log_out_of_order_is_named_without_a_copy_if_it_is_refused() {
+        let file = disordered();
+        let scanned = scan(&file, Damage::Refuse).expect("read");
+        let said = scanned.findings.to_string();
+        assert!(said.contains("out of order"), "{said}");
+        assert!(scanned.sorted.is_none());
+        let scanned = scan(&file, Damage::Salvage).expect("read");
+        assert!(scanned.sorted.is_some());
+        assert_eq!(scanned.ledger.books().totals.received, 40);
+    }
+
+    #[test]
+    fn the_folder_in_which_no_copy_can_be_made_is_named() {
+        let folder = tempfile::tempdir().expect("a folder").path().join("none");
+        let error = repair::sorted(&disordered(), &folder).expect_err("there is no such folder");
+        let said = error.to_string();
+        assert!(said.contains(&folder.display().to_string()), "{said}");
+        assert!(said.contains("out of order"), "{said}");
     }
 }

@@ -7,6 +7,7 @@ use crepitus_protocol::frame::DELIMITER;
 use std::collections::{BTreeMap, HashSet};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::Path;
 
 /// A frame and where it belongs: the ticks of a start of the drive, or, of
 /// parameters, the block that follows them.
@@ -22,11 +23,26 @@ struct Place {
 
 /// Copies what is readable: blocks and subscriptions by start and tick, entries each once;
 /// parameters stay before the block that they stand before. Checkpoints are left out.
-pub(super) fn sorted(file: &File) -> io::Result<File> {
+/// The copy is a nameless file in a folder.
+pub(super) fn sorted(file: &File, folder: &Path) -> io::Result<File> {
     let (header, places) = places(file)?;
-    let mut copy = BufWriter::new(tempfile::tempfile()?);
+    copied(file, header.iter().chain(&places), folder).map_err(|error| {
+        let text = format!(
+            "its samples are out of order, and a copy in order cannot be made in the folder for \
+             temporary files, {}: {error}",
+            folder.display()
+        );
+        io::Error::new(error.kind(), text)
+    })
+}
+
+fn copied<'p>(
+    file: &File,
+    frames: impl Iterator<Item = &'p Place>,
+    folder: &Path,
+) -> io::Result<File> {
+    let mut copy = BufWriter::new(tempfile::tempfile_in(folder)?);
     copy.write_all(MAGIC)?;
-    let frames = header.iter().chain(places.iter());
     for place in frames {
         let mut file = file;
         file.seek(SeekFrom::Start(place.from))?;

@@ -1,9 +1,10 @@
 //! Reading: only what its checksums say is right is handed to the decoder.
 
 use super::seal::{self, Seal};
-use super::{About, ID_KEY, KEY, NO_SUM, columns, other};
-use crate::books::Recount;
+use super::{About, KEY, NO_SUM, columns, other, value};
+use crate::books::{Books, Recount, RowCount};
 use crate::findings::Findings;
+use crate::metadata::Metadata;
 use crate::row::Row;
 use bytes::{Buf, Bytes, buf};
 use crepitus_protocol::frame::CRC;
@@ -34,8 +35,7 @@ impl Reader {
         let mut findings = Findings::default();
         let footer = footer(&file)?;
         let is_whole = sum_is_right(&file, footer.as_ref())?;
-        let mut seals = seal::find(&file)?;
-        seals.sort_by_key(|seal| seal.first_row);
+        let seals = seal::find(&file)?;
         let mut about = None;
         if let (true, Some((_, bytes))) = (is_whole, &footer) {
             about = about_of(&decoded(bytes)?);
@@ -43,22 +43,23 @@ impl Reader {
         if !is_whole {
             findings.add("Its checksum is not that of its content".to_owned());
         }
-        // The first one has no group.
-        about = about.or_else(|| {
-            let mut heads = seals.iter().filter(|seal| seal.rows == 0);
-            heads.find_map(|seal| about_of(&seal.footer().ok()?))
-        });
         if about.is_none() {
-            let (_, bytes) = footer.as_ref().ok_or_else(unreadable)?;
-            about = decoded(bytes).ok().as_ref().and_then(about_of);
-            findings.add("Its metadata could not be checked".to_owned());
+            let footer = footer.as_ref().map(|(_, bytes)| bytes.as_slice());
+            about = salvaged_about(&seals, footer, &mut findings);
         }
-        let mut about = about.ok_or_else(unreadable)?;
+        let is_lost = about.is_none();
+        let mut about = match about {
+            Some(about) => about,
+            None => lost_about(&seals, &mut findings).ok_or_else(unreadable)?,
+        };
         let mut reader = Self {
             file,
             seals: Vec::new(),
         };
         reader.keep(seals, &mut about, &mut findings)?;
+        if is_lost {
+            about.books = reader.counted()?;
+        }
         Ok((reader, about, findings))
     }
 
@@ -73,16 +74,7 @@ impl Reader {
         let mut recount = Recount::new(&books);
         let mut kept = Vec::new();
         let mut next_row = 0;
-        let groups = seals.into_iter().filter(|seal| seal.rows > 0);
-        for seal in groups {
-            let footer = seal.footer()?;
-            if value(&footer, ID_KEY).is_some_and(|id| id != about.metadata.id) {
-                let at = seal.first_byte;
-                findings.add(format!(
-                    "Rows of another recording stand in it, at byte {at}, and are left out"
-                ));
-                continue;
-            }
+        for seal in own_groups(seals, &about.metadata.id, findings) {
             if seal.first_row < next_row {
                 findings.add(format!("Rows from {} on are there twice", seal.first_row));
                 continue;
@@ -91,10 +83,14 @@ impl Reader {
                 continue;
             };
             if seal.first_row > next_row {
+                let of = match books.totals.received {
+                    // Its books are lost.
+                    0 => String::new(),
+                    all => format!(" of {all}"),
+                };
                 findings.add(format!(
-                    "Rows {next_row} to {} of {} are damaged",
-                    seal.first_row - 1,
-                    books.totals.received
+                    "Rows {next_row} to {}{of} are damaged",
+                    seal.first_row - 1
                 ));
             }
             for row in &rows {
@@ -125,6 +121,27 @@ impl Reader {
         }
         about.books = recount.into_books();
         Ok(())
+    }
+
+    /// Books of its rows, which have none.
+    fn counted(&self) -> io::Result<Books> {
+        let mut count = RowCount::default();
+        let mut next_row = 0;
+        for seal in &self.seals {
+            let mut lost = seal.first_row.saturating_sub(next_row);
+            let rows = self.kept_group(seal)?;
+            for row in &rows {
+                count.row(row, std::mem::take(&mut lost));
+            }
+            next_row = seal.first_row + rows.len() as u64;
+        }
+        Ok(count.into_books())
+    }
+
+    /// The rows of a group that was read before.
+    fn kept_group(&self, seal: &Seal) -> io::Result<Vec<Row>> {
+        let changed = || io::Error::other("the file changes while it is read");
+        self.group(seal)?.ok_or_else(changed)
     }
 
     /// The rows of a group; none if it is damaged.
@@ -176,6 +193,93 @@ fn unreadable() -> io::Error {
     )
 }
 
+/// Metadata of a file whose checksum is wrong: from the seal before the first group, or from
+/// the footer, which has no checksum of its own. None if both are lost.
+fn salvaged_about(seals: &[Seal], footer: Option<&[u8]>, findings: &mut Findings) -> Option<About> {
+    // Where its end is lost, other bytes stand in its place.
+    let footer = footer.filter(|footer| footer.ends_with(b"PAR1"));
+    let mut heads = seals.iter().filter(|seal| seal.rows == 0);
+    let head = heads.find_map(|seal| about_of(&seal.footer().ok()?));
+    let own_id = match &head {
+        Some(head) => Some(head.metadata.id.as_str()),
+        None => id_of_most(seals),
+    };
+    let footer_id = footer.and_then(id_in);
+    let is_foreign = own_id.is_some() && footer_id.is_some() && own_id != footer_id;
+    if is_foreign {
+        findings
+            .add("Its footer is that of another recording, or the id in it is damaged".to_owned());
+    }
+    if head.is_some() || is_foreign {
+        return head;
+    }
+    let about = about_of(&decoded(footer?).ok()?)?;
+    findings.add("Its metadata could not be checked".to_owned());
+    Some(about)
+}
+
+/// Metadata of a file of which only groups are left; none if there is no group either.
+fn lost_about(seals: &[Seal], findings: &mut Findings) -> Option<About> {
+    if seals.iter().all(|seal| seal.rows == 0) {
+        return None;
+    }
+    findings.add("Its metadata is lost: its device and its parameters are unknown".to_owned());
+    Some(About {
+        metadata: Metadata {
+            id: id_of_most(seals).unwrap_or_default().to_owned(),
+            title: "A recording whose metadata is lost".to_owned(),
+            ..Metadata::unknown()
+        },
+        ..About::default()
+    })
+}
+
+/// The id that most groups have; of several, that of the first.
+fn id_of_most(seals: &[Seal]) -> Option<&str> {
+    let mut counts: Vec<(&str, u64)> = Vec::new();
+    for id in seals.iter().filter_map(|seal| seal.id.as_deref()) {
+        match counts.iter_mut().find(|(known, _)| *known == id) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((id, 1)),
+        }
+    }
+    // Of equals, `max_by_key` takes the last.
+    let most = counts.iter().rev().max_by_key(|(_, count)| *count)?;
+    Some(most.0)
+}
+
+/// The recording's id in the bytes of a footer, read without the decoder: the footer may be
+/// damaged.
+fn id_in(footer: &[u8]) -> Option<&str> {
+    const MARK: &[u8] = b"\"id\":\"";
+    let at = footer.windows(MARK.len()).position(|part| part == MARK)?;
+    let id = footer.get(at + MARK.len()..)?;
+    let id = id.split(|byte| *byte == b'"').next()?;
+    std::str::from_utf8(id).ok()
+}
+
+/// The groups of the recording with this id, in the order of their rows.
+fn own_groups(seals: Vec<Seal>, id: &str, findings: &mut Findings) -> Vec<Seal> {
+    let mut groups: Vec<Seal> = Vec::new();
+    for seal in seals.into_iter().filter(|seal| seal.rows > 0) {
+        if seal.id.as_deref().is_some_and(|other| other != id) {
+            let at = seal.first_byte;
+            findings.add(format!(
+                "Rows of another recording stand in it, at byte {at}, and are left out"
+            ));
+        } else {
+            groups.push(seal);
+        }
+    }
+    let rows = groups.iter().map(|seal| seal.first_row);
+    let mut pairs = rows.clone().zip(rows.skip(1));
+    if let Some((_, row)) = pairs.find(|(before, row)| row < before) {
+        findings.add(format!("Rows are out of order, first those from {row} on"));
+    }
+    groups.sort_by_key(|seal| seal.first_row);
+    groups
+}
+
 /// Offset of the footer, and its bytes.
 fn footer(mut file: &File) -> io::Result<Option<(u64, Vec<u8>)>> {
     let length = file.metadata()?.len();
@@ -203,12 +307,6 @@ fn decoded(footer: &[u8]) -> io::Result<ParquetMetaData> {
 
 fn about_of(footer: &ParquetMetaData) -> Option<About> {
     serde_json::from_str(value(footer, KEY)?).ok()
-}
-
-fn value<'f>(footer: &'f ParquetMetaData, key: &str) -> Option<&'f str> {
-    let pairs = footer.file_metadata().key_value_metadata()?;
-    let pair = pairs.iter().find(|pair| pair.key == key)?;
-    pair.value.as_deref()
 }
 
 /// True if the file is the one that was written, to the last bit.
@@ -313,9 +411,7 @@ impl ParquetRows<'_> {
             let Some(seal) = self.due.next() else {
                 return Ok(None);
             };
-            let rows = self.reader.group(seal)?;
-            let changed = || io::Error::other("the file changes while it is read");
-            self.group = rows.ok_or_else(changed)?.into_iter();
+            self.group = self.reader.kept_group(seal)?.into_iter();
         }
     }
 }

@@ -8,7 +8,7 @@
 //! The seal before the first group covers no bytes, and its footer has no group:
 //! it holds the recording's metadata, in case that in the footer is lost.
 
-use super::other;
+use super::{ID_KEY, other, value};
 use crepitus_protocol::frame::CRC;
 use parquet::file::metadata::{
     FileMetaData, ParquetMetaData, ParquetMetaDataReader, ParquetMetaDataWriter, RowGroupMetaData,
@@ -36,6 +36,8 @@ pub(super) struct Seal {
     pub(super) first_row: u64,
     /// Of the group.
     pub(super) rows: u64,
+    /// The recording's; none in the seal before the first group.
+    pub(super) id: Option<String>,
     /// With this group alone, encoded: decoded it takes ten times the memory.
     footer: Vec<u8>,
 }
@@ -92,6 +94,7 @@ impl Seal {
             crc: u32::from_le_bytes(*crc),
             first_row: u64::from_le_bytes(*first_row),
             rows: u64::try_from(rows).ok()?,
+            id: value(&footer, ID_KEY).map(str::to_owned),
             footer: thrift.to_vec(),
         })
     }

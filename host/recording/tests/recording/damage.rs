@@ -183,7 +183,9 @@ fn the_begin_of_a_subscription_that_stands_too_late_is_put_back() {
         ]
         .concat();
         let said = bench.check_mended(&moved);
-        assert!(said.contains("out of order"), "{said}");
+        assert!(said.contains("first those of tick"), "{said}");
+        assert!(said.contains("with `--salvage`"), "{said}");
+        assert!(said.contains("are put in order"), "{said}");
     }
 }
 
@@ -242,6 +244,21 @@ fn the_encoder_that_is_assumed_where_parameters_are_lost_is_said() {
             assert!((row.angle_rad - expected).abs() < 1e-9, "{}", row.tick);
         }
     }
+}
+
+/// What every recording has is known without its header.
+#[test]
+fn columns_have_their_meaning_without_the_header() {
+    let bench = Bench::new();
+    let mut damaged = bench.whole.clone();
+    let header = bench.frames()[1].clone();
+    damaged[header.start + header.len() / 2] ^= 1;
+    let said = bench.check_in_order(&damaged, bench.all.len());
+    assert!(said.contains("Its header is missing"), "{said}");
+    let whole = open(&bench.folder.path().join("whole")).unwrap();
+    let salvaged = salvaged(&bench.path());
+    assert_eq!(salvaged.metadata().columns, whole.metadata().columns);
+    assert_eq!(salvaged.metadata().ticks_per_s, 20_000);
 }
 
 /// Values that depend on a lost entry are not made up; the next entry with all of
@@ -335,7 +352,10 @@ fn a_part_of_another_recording_is_named() {
     let other = fs::read(&path).unwrap();
     let both = [&bench.whole[..], &other[..]].concat();
     let said = bench.check(&both, bench.all.len());
-    assert!(said.contains("more after its end"), "{said}");
+    assert_eq!(said.matches("more after its end").count(), 1, "{said}");
+    assert!(!said.contains("more like these"), "{said}");
+    let said = bench.check(&[&bench.whole[..], &[7]].concat(), bench.all.len());
+    assert!(said.contains("1 byte follows its end"), "{said}");
     // The header of one, the samples of the other.
     let header = bench.frames()[1].end;
     let mixed = [&bench.whole[..header], &other[header..]].concat();

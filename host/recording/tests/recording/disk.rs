@@ -135,9 +135,11 @@ fn whenever_power_is_cut_everything_up_to_the_last_second_is_read() {
         durable_rows.push(kept);
     }
     let mut random = fastrand::Rng::with_seed(3);
-    // At the begin and around each sync everywhere, else now and then: each cut reads the file.
+    // At the begin and around each sync everywhere, else one in eight, or with CREPITUS_LONG all: each cut
+    // reads the file.
+    let is_long = std::env::var_os("CREPITUS_LONG").is_some();
     let is_near = |cut: usize| cut < 10 || syncs.iter().any(|end| end.abs_diff(cut) <= 1);
-    for cut in (0..=asked.len()).filter(|cut| cut.is_multiple_of(8) || is_near(*cut)) {
+    for cut in (0..=asked.len()).filter(|cut| is_long || cut.is_multiple_of(8) || is_near(*cut)) {
         let seconds = syncs.partition_point(|end| *end <= cut);
         let durable = seconds.checked_sub(1).map_or(0, |last| syncs[last]);
         let sure = durable_rows[seconds];

@@ -69,6 +69,7 @@ fn foxglove_reads_a_message_a_millisecond_and_every_event() {
     let mut counts = BTreeMap::new();
     let mut last = 0;
     let mut knees = Vec::new();
+    let mut logged = Vec::new();
     for message in MessageStream::new(&bytes).unwrap() {
         let message = message.unwrap();
         let channel = &message.channel;
@@ -83,6 +84,9 @@ fn foxglove_reads_a_message_a_millisecond_and_every_event() {
             fits(&data, &schema, &channel.topic);
         }
         *counts.entry(channel.topic.clone()).or_insert(0) += 1;
+        if channel.topic == "/log" {
+            logged.push(data["message"].as_str().unwrap().to_owned());
+        }
         if channel.topic == "/knee" {
             assert!(message.log_time >= last);
             last = message.log_time;
@@ -104,6 +108,15 @@ fn foxglove_reads_a_message_a_millisecond_and_every_event() {
     assert_eq!(counts["/parameters"], 12);
     // The title, what is missing, and each of the gaps.
     assert_eq!(counts["/log"], 2 + 4);
+    assert_eq!(
+        logged[2..],
+        [
+            "samples of 0.0020 s are missing before tick 5440",
+            "samples of 0.0010 s are missing before tick 9860",
+            "samples of 0.2000 s are missing before tick 18260",
+            "the drive has restarted; how long that took is not known",
+        ]
+    );
     for (bin, knee) in all.chunks(20).zip(&knees) {
         sums_up(knee, bin);
     }

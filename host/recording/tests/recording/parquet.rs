@@ -234,6 +234,134 @@ fn a_group_that_is_lost_leaves_rows_and_parameters_in_step() {
     );
 }
 
+/// Where the seals of a file stand; the first one has no group.
+fn seals(file: &[u8]) -> Vec<usize> {
+    let mark = b"\xe7crepitus group\x1c";
+    let marks = file.windows(mark.len()).enumerate();
+    marks
+        .filter(|(_, window)| window == mark)
+        .map(|(at, _)| at)
+        .collect()
+}
+
+/// Where the footer of a file stands.
+fn footer_at(file: &[u8]) -> usize {
+    let (rest, tail) = file.split_last_chunk::<8>().unwrap();
+    let [a, b, c, d, ..] = *tail;
+    rest.len() - u32::from_le_bytes([a, b, c, d]) as usize
+}
+
+/// The seal before the first group cannot be found.
+fn without_head(file: &[u8]) -> Vec<u8> {
+    let mut bytes = file.to_vec();
+    bytes[seals(file)[0]] ^= 1;
+    bytes
+}
+
+/// Neither metadata in the seal before the first group nor in the footer.
+fn without_metadata(file: &[u8]) -> Vec<u8> {
+    let mut bytes = without_head(file);
+    bytes[footer_at(file)..].fill(0);
+    bytes
+}
+
+/// Another recording as a file, of the same device.
+fn another(bench: &Bench) -> Vec<u8> {
+    let log = bench.folder.path().join("another log");
+    recorded(&log, "another", &sent(2_100));
+    let other = bench.folder.path().join("another");
+    converted(&log, &other);
+    fs::read(other).unwrap()
+}
+
+#[test]
+fn rows_are_kept_without_any_metadata() {
+    let bench = Bench::new(BLOCKS);
+    let damaged = without_metadata(&bench.whole);
+    let said = bench.check(&damaged, bench.all.len());
+    assert!(said.contains("Its metadata is lost"), "{said}");
+    let recording = salvaged(&bench.write(&damaged));
+    assert_eq!(rows(&recording), bench.all);
+    let whole = open(&bench.folder.path().join("parquet")).unwrap();
+    assert_eq!(recording.metadata().id, whole.metadata().id);
+    assert_eq!(recording.metadata().columns, whole.metadata().columns);
+    let books = recording.books();
+    assert_eq!(books.drive_restarts, 1);
+    // But for those that the drive produced first after its restart, and dropped.
+    let totals = whole.books().totals;
+    assert_eq!(books.totals.received, totals.received);
+    assert_eq!(books.totals.dropped, totals.dropped - 20);
+    // A group that is damaged besides: the rest is kept.
+    let mut damaged = damaged;
+    damaged[bench.whole.len() / 20] ^= 1;
+    let said = bench.check(&damaged, 60_000);
+    assert!(said.contains("Rows 0 to 39999 are damaged"), "{said}");
+    let totals = salvaged(&bench.write(&damaged)).books().totals;
+    assert_eq!((totals.received, totals.damaged), (60_000, 40_000));
+    // Cut off in the last group.
+    let cut = bench.whole.len() * 9 / 10;
+    bench.check(&without_head(&bench.whole)[..cut], 80_000);
+}
+
+#[test]
+fn the_footer_of_another_recording_is_named_and_costs_no_row() {
+    let bench = Bench::new(BLOCKS);
+    let other = another(&bench);
+    let own = footer_at(&bench.whole);
+    let foreign = [&bench.whole[..own], &other[footer_at(&other)..]].concat();
+    for bytes in [foreign.clone(), without_head(&foreign)] {
+        let said = bench.check(&bytes, bench.all.len());
+        assert!(said.contains("footer is that of another"), "{said}");
+        assert!(!said.contains("Rows of another recording"), "{said}");
+    }
+    // Its own one is not.
+    let said = bench.check(&without_head(&bench.whole), bench.all.len());
+    assert!(said.contains("metadata could not be checked"), "{said}");
+    assert!(!said.contains("another"), "{said}");
+}
+
+/// Each with its seal.
+#[test]
+fn groups_that_are_out_of_order_are_named_and_kept() {
+    let bench = Bench::new(BLOCKS);
+    let w = &bench.whole;
+    let ends = seal_ends(w);
+    let swapped = [
+        &w[..ends[0]],
+        &w[ends[1]..ends[2]],
+        &w[ends[0]..ends[1]],
+        &w[ends[2]..],
+    ]
+    .concat();
+    let said = bench.check(&swapped, bench.all.len());
+    assert!(
+        said.contains("Rows are out of order, first those from 0 on"),
+        "{said}"
+    );
+    assert_eq!(rows(&salvaged(&bench.write(&swapped))), bench.all);
+}
+
+/// Where each seal ends.
+fn seal_ends(file: &[u8]) -> Vec<usize> {
+    let end = |at: &usize| {
+        let length = file[at + 16..].first_chunk().unwrap();
+        at + 24 + u32::from_le_bytes(*length) as usize
+    };
+    seals(file).iter().map(end).collect()
+}
+
+/// It is one group.
+#[test]
+fn a_recording_of_less_than_two_seconds_is_lost_with_its_group() {
+    let bench = Bench::new(1_900);
+    let mut damaged = bench.whole.clone();
+    let middle = damaged.len() / 2;
+    damaged[middle] ^= 1;
+    bench.check(&damaged, 0);
+    let recording = salvaged(&bench.write(&damaged));
+    assert_eq!(recording.books().totals.damaged, bench.all.len() as u64);
+}
+
 /// The groups of one where those of another were, seals and all.
 #[test]
 fn a_group_of_another_recording_is_named_and_left_out() {
@@ -243,14 +371,6 @@ fn a_group_of_another_recording_is_named_and_left_out() {
     let other = bench.folder.path().join("other");
     converted(&log, &other);
     let other = fs::read(other).unwrap();
-    let mark = b"\xe7crepitus group\x1c";
-    let seals = |file: &[u8]| -> Vec<usize> {
-        let marks = file.windows(mark.len()).enumerate();
-        marks
-            .filter(|(_, window)| window == mark)
-            .map(|(at, _)| at)
-            .collect()
-    };
     let (own, foreign) = (seals(&bench.whole), seals(&other));
     let spliced = [
         &bench.whole[..own[1]],

@@ -3,7 +3,7 @@
 use crate::support::{
     check_books, metadata, open, plain, record, recorded, rows, rows_of, sent, sent_of,
 };
-use crepitus_recording::{Cause, ReadError, RecordError, Recorder, Totals};
+use crepitus_recording::{Analysis, Cause, ReadError, RecordError, Recorder, Totals};
 use std::fs;
 
 #[test]
@@ -65,6 +65,27 @@ fn what_was_recorded_is_read_with_its_gaps_and_parameters() {
             "4080 of 34080 samples (0.204 s) are missing in 4 gaps: 60 dropped by the device, 20 lost on the \
           way, 4000 not recorded while the connection was lost."
         ]
+    );
+}
+
+/// Missing samples are in the span, and a restart of the drive takes no time in it.
+#[test]
+fn a_summary_has_the_span_and_the_recorded_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a recording");
+    recorded(&path, "a test", &sent(1_500));
+    let recording = open(&path).unwrap();
+    let mut analysis = Analysis::new(&recording);
+    for row in rows(&recording) {
+        analysis.row(&row);
+    }
+    let summary = analysis.finish();
+    assert!((summary.duration_s - 1.5).abs() < 1e-9);
+    assert!((summary.span_s - 1.703).abs() < 1e-9, "{}", summary.span_s);
+    let warnings = summary.warnings.join("\n");
+    assert!(
+        warnings.contains("The drive restarted once during the recording"),
+        "{warnings}"
     );
 }
 

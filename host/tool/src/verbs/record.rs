@@ -5,9 +5,9 @@ use crate::failure::{Failure, print, print_json};
 use crate::following::{Arming, follow};
 use crate::interrupt;
 use crate::line::connect;
-use crate::recorded::{Recorded, print_ended};
-use crate::shell;
+use crate::recorded::{Recorded, print_ended, report_command};
 use clap::Args;
+use crepitus_client::Unheard;
 use crepitus_recording::Totals;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -52,14 +52,26 @@ fn kept(failure: Failure, file: &Path, totals: &Totals) -> Failure {
         return failure;
     };
     let text = format!(
-        "{text}; {} holds {} samples: `crepitus report {}`",
+        "{text}; {} holds {} samples: `{}`",
         file.display(),
         totals.received,
-        shell::word(file)
+        report_command(file)
     );
     let fields = [("file", json!(file)), ("telemetry", json!(totals))];
     let fields = fields.map(|(name, value)| (name.to_owned(), value));
     Failure::Kept(text, fields.into_iter().collect())
+}
+
+/// The end of the recording is not what the device had produced by then.
+fn silent(unheard: Unheard) -> Failure {
+    let ms = unheard.silence.as_millis();
+    let what = match unheard.samples {
+        Some(samples) => format!("while the device has produced {samples} samples"),
+        None => "and the device does not answer".to_owned(),
+    };
+    Failure::Work(format!(
+        "nothing was heard for the last {ms} ms, {what}: the recording is not complete"
+    ))
 }
 
 /// Records.
@@ -77,7 +89,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         arguments.arming,
         &mut recorded,
     );
+    let unheard = client.unheard();
     client.end_telemetry();
+    if let (Ok(_), Some(unheard)) = (&end, unheard) {
+        let totals = recorded.leave()?;
+        return Err(kept(silent(unheard), file, &totals));
+    }
     // Finishes the file also after an error.
     let totals = recorded.finish()?;
     if let Err(failure) = end {

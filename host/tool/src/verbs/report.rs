@@ -15,7 +15,8 @@ use crate::wav::Wav;
 use clap::Args;
 use crepitus_protocol::TICK_S;
 use crepitus_recording::{
-    Analysis, ArmingPushes, Damage, History, Recording, RecordingSummary, ReportColumns, seconds,
+    Analysis, ArmingPushes, Books, Damage, History, Recording, RecordingSummary, ReportColumns,
+    Row, Step, seconds,
 };
 use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
 use crepitus_scene::output::Folder;
@@ -98,7 +99,8 @@ pub(super) fn write(
     out: &Path,
     extras: &Extras<'_>,
 ) -> Result<Reported<RecordingSummary>, Failure> {
-    write_into(results::folder(out)?, recording, out, extras)
+    let folder = results::folder_of_report(out, &recording.metadata().id)?;
+    write_into(folder, recording, out, extras)
 }
 
 /// The same by way of a folder that is prepared, with what it has already.
@@ -126,7 +128,7 @@ pub(super) fn write_into(
     collector.compare(measured, &columns);
     let mut changes = parameters.changes().peekable();
     let mut changed_at_s = Vec::new();
-    let mut previous_s = 0.0;
+    let mut before: Option<Row> = None;
     let mut values = Vec::new();
     let mut pushes = ArmingPushes::default();
     let mut analysis = Analysis::new(recording);
@@ -140,10 +142,8 @@ pub(super) fn write_into(
             }
             changed_at_s.push(row.time_s);
         }
-        if row.time_s - previous_s > 1.5 * TICK_S {
-            collector.gap(previous_s, row.time_s);
-        }
-        previous_s = row.time_s;
+        note_step(&mut collector, before.as_ref(), &row, recording.books());
+        before = Some(row);
         let derived = analysis.row(&row);
         report_columns.read(&row, &derived, &mut values);
         collector.row(&values);
@@ -166,7 +166,8 @@ pub(super) fn write_into(
     }
     let missing_s = seconds(recording.books().missing_at_end);
     if missing_s > 0.0 {
-        collector.gap(previous_s, previous_s + missing_s);
+        let last_s = before.map_or(0.0, |row| row.time_s);
+        collector.gap(last_s, last_s + missing_s);
     }
     let summary = analysis.finish();
     let text = Text {
@@ -193,6 +194,35 @@ pub(super) fn write_into(
         differences,
         sound,
     })
+}
+
+/// Tells the figures what lies before a row: missing samples, or a restart of the drive.
+fn note_step(collector: &mut Collector, before: Option<&Row>, row: &Row, books: &Books) {
+    let Some(before) = before else {
+        let from_s = first_time_s(row, books);
+        if row.time_s - from_s > 0.5 * TICK_S {
+            collector.gap(from_s, row.time_s);
+        }
+        return;
+    };
+    match row.step_from(before) {
+        Step::Next => {}
+        Step::Missing(_) => collector.gap(before.time_s, row.time_s),
+        Step::Restart => {
+            collector.gap(before.time_s, row.time_s);
+            collector.mark(Mark {
+                at: row.time_s,
+                name: "drive restarted".to_owned(),
+            });
+        }
+    }
+}
+
+/// When the accounting begins, s: before the first row, if samples are missing there.
+fn first_time_s(first: &Row, books: &Books) -> f64 {
+    let gaps = books.gaps.iter().take_while(|gap| gap.row == 0);
+    let missing = gaps.map(|gap| gap.samples).sum();
+    (first.time_s - seconds(missing)).min(0.0)
 }
 
 /// The torque levels, if they were the same all the time.
@@ -223,8 +253,13 @@ fn in_brief(s: &RecordingSummary) -> String {
             t.min_nm, t.max_nm, t.mean_nm
         )
     });
+    let within = if s.span_s - s.duration_s > TICK_S {
+        format!(" within {:.3} s", s.span_s)
+    } else {
+        String::new()
+    };
     format!(
-        "{}\n{warnings}  {:.3} s, {:.3} s of it armed, with {}\n{torque}  \
+        "{}\n{warnings}  {:.3} s recorded{within}, {:.3} s of it armed, with {}\n{torque}  \
          {} samples produced = {} received + {} dropped\n",
         s.title,
         s.duration_s,
@@ -234,4 +269,129 @@ fn in_brief(s: &RecordingSummary) -> String {
         s.telemetry.received,
         s.telemetry.dropped
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+    use crepitus_protocol::management::Identity;
+    use crepitus_protocol::telemetry::{Block, BlockFlags};
+    use crepitus_protocol::{State, Values};
+    use crepitus_recording::{Begin, Metadata, Recorder};
+    use std::ffi::OsStr;
+    use std::fs;
+
+    /// The command line of a report.
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    /// The page of a recording: runs of blocks, each with its first tick, the drive's start and the
+    /// number of blocks. The accounting begins at tick 1,000.
+    fn page(runs: &[(u64, u16, u64)]) -> String {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a");
+        let metadata = Metadata::new("a test", &Identity::default(), None);
+        let mut recorder = Recorder::create(&file, &metadata).unwrap();
+        let begin = Begin {
+            first_tick: 1_000,
+            dropped: 0,
+            start: 1,
+        };
+        recorder.subscribed(begin).unwrap();
+        recorder.announce(Block::default().revision, &Values::default());
+        for (first_tick, start, blocks) in runs {
+            for n in 0..*blocks {
+                recorder.block(&block(first_tick + 20 * n, *start)).unwrap();
+            }
+        }
+        recorder.finish().unwrap();
+        let line = Line::parse_from([OsStr::new("report"), file.as_os_str()]);
+        let extras = Extras {
+            pictures: &line.arguments.pictures,
+            overlay: &line.arguments.overlay,
+            wav: &line.arguments.wav,
+        };
+        let out = folder.path().join("out");
+        let recording = Recording::open(&file, Damage::Refuse).unwrap();
+        write(&recording, &out, &extras).unwrap();
+        fs::read_to_string(out.join("report.html")).unwrap()
+    }
+
+    /// A count a tick, and a torque that is not zero throughout.
+    fn block(first_tick: u64, start: u16) -> Block {
+        let mut block = Block {
+            first_tick,
+            flags: BlockFlags::new(State::Disarmed, false, start),
+            ..Block::default()
+        };
+        for (sample, tick) in block.samples.iter_mut().zip(first_tick..) {
+            sample.count = i32::try_from(tick).unwrap();
+            sample.model_torque_nm = 0.01 * f32::from(u8::try_from(tick % 50).unwrap());
+        }
+        block
+    }
+
+    const BLANK: &str = "Blank between dotted lines";
+
+    /// The name above a chart.
+    const RESTARTED: &str = ">drive restarted<";
+
+    #[test]
+    fn a_recording_without_a_gap_has_none_drawn() {
+        let page = page(&[(1_000, 1, 200)]);
+        assert!(!page.contains(BLANK) && !page.contains(RESTARTED));
+    }
+
+    #[test]
+    fn no_line_reaches_across_a_restart_of_the_drive() {
+        // Its ticks begin again, at 0.
+        let page = page(&[(1_000, 1, 200), (0, 2, 200)]);
+        assert!(page.contains(BLANK) && page.contains(RESTARTED));
+        assert!(page.contains("The drive restarted once"));
+    }
+
+    #[test]
+    fn samples_missing_before_the_first_one_are_drawn() {
+        let page = page(&[(3_000, 1, 200)]);
+        assert!(page.contains("2000 samples, 0.1000 s: lost on the way"));
+        assert!(page.contains(BLANK) && !page.contains(RESTARTED));
+    }
+
+    #[test]
+    fn the_accounting_begins_before_the_first_row_by_what_is_missing_there() {
+        let gap = |row, samples| crepitus_recording::Gap {
+            row,
+            first_tick: 0,
+            samples,
+            cause: crepitus_recording::Cause::OnTheWay,
+        };
+        let books = Books {
+            gaps: vec![gap(0, 1_000), gap(0, 3_000), gap(20, 500)],
+            ..Books::default()
+        };
+        let first_s = |time_s: f64, books: &Books| {
+            let row = Row {
+                time_s,
+                ..Row::default()
+            };
+            first_time_s(&row, books)
+        };
+        assert!((first_s(0.0, &books) + 0.2).abs() < 1e-12);
+        // Of a file whose first rows are lost.
+        assert_eq!(first_s(0.2, &books), 0.0);
+        assert_eq!(first_s(2.0, &Books::default()), 0.0);
+        assert_eq!(first_s(0.0, &Books::default()), 0.0);
+    }
+
+    #[test]
+    fn span_and_recorded_time_differ_by_what_is_missing() {
+        let page = page(&[(1_000, 1, 200), (9_000, 1, 200)]);
+        for part in ["recorded time", "0.400 s", "0.600 s from the first"] {
+            assert!(page.contains(part), "{part}");
+        }
+    }
 }

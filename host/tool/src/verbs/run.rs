@@ -7,6 +7,7 @@ mod watch;
 use crate::cli::{key_and_value, set_once};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
+use crate::output::to_stderr;
 use crate::overlay::{self, Overlay};
 use crate::pictures::Pictures;
 use crate::reported::Reported;
@@ -103,11 +104,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     };
     let tell = |verb: &str, out: &Path| {
         if !as_json {
-            eprintln!(
+            to_stderr(&format!(
                 "{} holds another run: this one {verb} {} (--force would replace it)",
                 wanted.display(),
                 out.display()
-            );
+            ));
         }
     };
     if out != wanted {

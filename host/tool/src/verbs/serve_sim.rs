@@ -5,6 +5,7 @@ mod port;
 mod usbip;
 
 use crate::failure::Failure;
+use crate::output::to_stderr;
 use clap::{Args, ValueEnum};
 use crepitus_board::{Start, VirtualDevice};
 use crepitus_emulator::on_target;
@@ -75,7 +76,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             Box::new(VirtualDevice::of(&scene, &Start::default()).map_err(Failure::input)?)
         }
         Kind::Emulated => {
-            let on_build = || eprintln!("building firmware, if it is not up to date");
+            let on_build = || to_stderr("building firmware, if it is not up to date");
             on_target::device(&scene, on_build).map_err(Failure::input)?
         }
     };

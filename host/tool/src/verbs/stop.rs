@@ -2,7 +2,7 @@
 
 use crate::cli::DeviceArguments;
 use crate::failure::{Failure, print, print_json, warn};
-use crate::line::{attached, failure, manage, named};
+use crate::line::{attached, failure, manage_to_stop, named};
 use clap::Args;
 use crepitus_sharing::Program;
 use serde_json::json;
@@ -67,7 +67,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 
 /// Stops a device; returns the programs that had armed it.
 fn stop(device: &DeviceArguments) -> Result<Vec<Program>, Failure> {
-    let mut management = manage(device)?;
+    let mut management = manage_to_stop(device)?;
     management.stop().map_err(failure)?;
     // After the stop: nothing may delay it.
     let mut programs = management.transport_mut().programs();

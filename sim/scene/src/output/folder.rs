@@ -5,7 +5,7 @@ use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// Files on their way into a folder. They are written beside it and moved in
+/// Files on their way into a folder. They are written elsewhere and moved in
 /// by [`commit`](Self::commit); dropped before that, no files remain.
 #[derive(Debug)]
 pub struct Folder {
@@ -45,9 +45,7 @@ impl Folder {
             ));
         }
         fs::create_dir_all(parent)?;
-        let parts = tempfile::Builder::new()
-            .prefix(".crepitus-")
-            .tempdir_in(parent)?;
+        let parts = parts_of(target, parent)?;
         let files = parts.path().join("files");
         fs::create_dir(&files)?;
         Ok(Self {
@@ -100,7 +98,7 @@ impl Folder {
         }
     }
 
-    /// Another place for the files; it has to be in the same folder.
+    /// Another place for the files; it has to be on the same file system.
     pub fn aim_at(&mut self, target: &Path) {
         target.clone_into(&mut self.target);
     }
@@ -117,6 +115,28 @@ impl Folder {
         }
         Ok(())
     }
+}
+
+/// A temporary folder from which files can be moved into `target`: in its parent, from where an empty
+/// target is replaced in one step, or in itself, if that is another file system or the parent
+/// cannot be written.
+fn parts_of(target: &Path, parent: &Path) -> io::Result<TempDir> {
+    let temporary_in = |folder: &Path| {
+        tempfile::Builder::new()
+            .prefix(".crepitus-")
+            .tempdir_in(folder)
+    };
+    if !target.exists() {
+        return temporary_in(parent);
+    }
+    let inside = temporary_in(target)?;
+    // Two mounts of one disk look alike: only a move tells them apart.
+    if let Ok(beside) = temporary_in(parent)
+        && fs::rename(inside.path(), beside.path()).is_ok()
+    {
+        return Ok(beside);
+    }
+    Ok(inside)
 }
 
 #[cfg(test)]
@@ -178,6 +198,41 @@ mod tests {
         assert!(Folder::create(&target).unwrap().commit_new().unwrap());
         let mode = |path: &Path| fs::metadata(path).unwrap().mode();
         assert_eq!(mode(&target), mode(&any));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn an_empty_folder_is_replaced_in_one_step() {
+        let home = tempfile::tempdir().unwrap();
+        let target = home.path().join("run");
+        fs::create_dir(&target).unwrap();
+        let folder = Folder::create(&target).unwrap();
+        Folder::finish(folder.file("a.txt").unwrap()).unwrap();
+        assert!(folder.commit_new().unwrap());
+        drop(folder);
+        assert_eq!(names(home.path()), ["run"]);
+        assert_eq!(names(&target), ["a.txt"]);
+    }
+
+    /// Shared memory is another file system than that of temporary files, as a rule.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_folder_on_another_file_system_is_filled() {
+        let Ok(other) = tempfile::tempdir_in("/dev/shm") else {
+            eprintln!("left out: there is no /dev/shm");
+            return;
+        };
+        let home = tempfile::tempdir().unwrap();
+        let target = home.path().join("run");
+        std::os::unix::fs::symlink(other.path(), &target).unwrap();
+        drop(Folder::create(&target).unwrap());
+        assert_eq!(names(other.path()), Vec::<String>::new());
+        let folder = Folder::create(&target).unwrap();
+        Folder::finish(folder.file("a.txt").unwrap()).unwrap();
+        assert!(!folder.commit_new().unwrap(), "it is there already");
+        folder.commit().unwrap();
+        assert_eq!(names(other.path()), ["a.txt"]);
+        assert_eq!(names(home.path()), ["run"]);
     }
 
     #[test]

@@ -76,8 +76,18 @@ pub(super) fn recording(
     let ripple = recording::acceleration_ripple_rad_s2(&segments);
     let data = DataFile::of(&path)
         .map_err(|e| section.key_error("file", format!("cannot be read: {e}")))?;
+    // JSON has no other names.
+    let Some(whole_path) = data.file.to_str() else {
+        return Err(section.key_error(
+            "file",
+            format!(
+                "{}: expected a path in UTF-8, because the run's summary.json names it: rename the file or its folder",
+                data.file.display()
+            ),
+        ));
+    };
     // Whoever repeats the run finds it from anywhere.
-    section.note("file", Value::Text(data.file.display().to_string()));
+    section.note("file", Value::Text(whole_path.to_owned()));
     let motion = if repeat {
         Motion::repeated(&segments)
     } else {

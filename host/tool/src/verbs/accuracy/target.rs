@@ -1,6 +1,7 @@
 //! What the ladder costs on the target: `--target`.
 
 use crate::failure::Failure;
+use crate::output::to_stderr;
 use crate::studying::Watch;
 use crepitus_emulator::on_target::{self, OnTarget};
 use crepitus_study::accuracy::target::inputs::Lengths;
@@ -10,7 +11,7 @@ use crepitus_study::accuracy::{Study, StudyScene};
 
 /// The program on an emulated core.
 pub(super) fn ladder() -> Result<OnTarget, Failure> {
-    on_target::ladder(|| eprintln!("building firmware/ladder, if it is not up to date"))
+    on_target::ladder(|| to_stderr("building firmware/ladder, if it is not up to date"))
         .map_err(|error| Failure::Work(format!("--target: {error}")))
 }
 

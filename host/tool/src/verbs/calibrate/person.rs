@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::keys::{Key, Keys};
 use crate::line::{Line, failure};
+use crate::output::to_stderr;
 use crepitus_client::{Client, Event};
 use std::io::{IsTerminal, stdin};
 use std::time::Duration;
@@ -54,7 +55,7 @@ impl Person {
 
     /// Says what to do, and waits until it is done.
     pub(super) fn ask(&self, client: &mut Client<Line>, step: Step) -> Result<Answer, Failure> {
-        eprintln!("\n{}: {}", step.name(), step.instruction());
+        to_stderr(&format!("\n{}: {}", step.name(), step.instruction()));
         if !self.is_there {
             return Ok(Answer::Go);
         }
@@ -63,7 +64,9 @@ impl Person {
         } else {
             "goes on"
         };
-        eprintln!("Enter {end}, s skips the step, Ctrl-C ends the program");
+        to_stderr(&format!(
+            "Enter {end}, s skips the step, Ctrl-C ends the program"
+        ));
         let keys = Keys::listen();
         loop {
             if interrupt::requested() {

@@ -10,6 +10,7 @@ use crate::failure::Failure;
 use crate::following::{Arming, End, Follower, follow};
 use crate::interrupt;
 use crate::line::{Line, failure, failure_with};
+use crate::output::to_stderr;
 use crepitus_client::{Client, coil_fault_text};
 use crepitus_identify::actuator::{Current, Hold, Series};
 use crepitus_model::control::chirp::Chirp;
@@ -93,7 +94,7 @@ fn play(client: &mut Client<Line>, chirp: PlayedChirp, zero: bool) -> Result<Ser
 
 /// Waits for Enter between two chirps.
 fn wait_for_added_mass() -> Result<(), Failure> {
-    eprintln!("disarmed: fasten the added mass to the moving mass, then press Enter");
+    to_stderr("disarmed: fasten the added mass to the moving mass, then press Enter");
     let mut line = String::new();
     let read = stdin().lock().read_line(&mut line);
     if interrupt::requested() || !matches!(read, Ok(count) if count > 0) {
@@ -230,7 +231,7 @@ impl Follower for Listening {
                     .map_err(|error| failure_with(client, error))?;
                 self.is_asked = true;
                 self.asked_at = self.chirped.len();
-                eprintln!("playing the chirp; Ctrl-C disarms");
+                to_stderr("playing the chirp; Ctrl-C disarms");
                 return Ok(false);
             }
             let armed_at = *self.armed_at.get_or_insert(client.now());

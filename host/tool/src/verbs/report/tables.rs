@@ -56,7 +56,11 @@ fn recording(s: &RecordingSummary) -> Section {
     let device = |c: &Controller| format!("{} (serial {})", c.version, c.serial);
     let t = &s.telemetry;
     let mut rows = vec![
-        ("length", format!("{:.3} s", s.duration_s)),
+        (
+            "span",
+            format!("{:.3} s from the first to the last sample", s.span_s),
+        ),
+        ("recorded time", format!("{:.3} s", s.duration_s)),
         ("armed", format!("{:.3} s", s.armed_s)),
         (
             "samples",

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
+use crate::output::to_stderr;
 use crate::safe_text::message;
 use crepitus_connection::Clock;
 use crepitus_usb::usbip::{Event, Server};
@@ -99,7 +100,7 @@ fn log(event: &Event) {
         Event::Refused { client, cause } => format!("{client} was refused: {cause}"),
         _ => return,
     };
-    eprintln!("usbip: {}", message(&text));
+    to_stderr(&format!("usbip: {}", message(&text)));
 }
 
 #[cfg(test)]
