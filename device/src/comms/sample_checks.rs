@@ -130,8 +130,11 @@ impl SampleChecks {
         // be what the drive has just found.
         let is_last = core::mem::replace(&mut self.was_live, is_live) && !is_live;
         let range = (block.flags.is_zeroed()).then_some(bounds.range);
+        // A leg that coasts fast drives a current through a bridge that floats.
+        let is_slow = speed.is_none_or(|counts| counts <= 0.5 * bounds.counts);
+        let floats = block.flags.state() == State::Armed && is_slow;
         let fault = (block.samples.iter()).find_map(|sample| {
-            let fault = self.sample(sample, bounds, is_last);
+            let fault = self.sample(sample, bounds, is_last, floats);
             let fault = fault.or_else(|| is_live.then(|| self.place(sample, range))?);
             fault.or_else(|| self.state(sample, is_live))
         });
@@ -139,7 +142,14 @@ impl SampleChecks {
         fault.or_else(|| self.speed(speed.filter(|_| is_live), bounds))
     }
 
-    fn sample(&mut self, sample: &Sample, bounds: &Bounds, is_last: bool) -> Option<Fault> {
+    /// `floats`: where the bridge is not driven, there is no current.
+    fn sample(
+        &mut self,
+        sample: &Sample,
+        bounds: &Bounds,
+        is_last: bool,
+        floats: bool,
+    ) -> Option<Fault> {
         let current_a =
             (sample.current_ma != NO_CURRENT).then(|| f32::from(sample.current_ma) * 1e-3);
         let is_over = current_a.is_some_and(|a| a.abs() > TRIP_A);
@@ -165,7 +175,12 @@ impl SampleChecks {
             let off_a = a + sample.torque_nm * bounds.amperes_per_nm;
             within(off_a, CURRENT_SLACK_A)
         });
-        let is_beside = is_energised && !is_that_of_torque;
+        let flows = || current_a.is_some_and(|a| !within(a, CURRENT_SLACK_A));
+        let is_beside = if is_energised {
+            !is_that_of_torque
+        } else {
+            floats && flows()
+        };
         // A limited sample neither counts nor makes up for others.
         if !is_limited && held(&mut self.beside, is_beside) >= BESIDE_SAMPLES {
             return Some(Fault::CurrentBesideTorque);
@@ -299,6 +314,18 @@ mod tests {
             ..energised(0.0)
         };
         assert_eq!(armed(beside), Some((Fault::CurrentBesideTorque, 6)));
+        // Also of a drive that says that it drives nothing, but for a leg that coasts fast.
+        let floating = |counts: i32| {
+            move |n: i32| Sample {
+                count: n * counts,
+                flags: SampleFlags::default(),
+                ..beside(n)
+            }
+        };
+        assert_eq!(armed(floating(0)), Some((Fault::CurrentBesideTorque, 6)));
+        assert_eq!(armed(floating(3)), Some((Fault::CurrentBesideTorque, 6)));
+        assert_eq!(armed(floating(7)), None);
+        assert_eq!(blocks_until(floating(0), State::Arming), None);
         // 5.73 rad/s are 8.0 counts a tick, with 15 % and the bound's two counts 9.4.
         let fast = |n: i32| Sample {
             count: n * 10,

@@ -153,11 +153,12 @@ impl Command {
     }
 
     fn apply(&mut self, plan: &CommandPlan, counters: &Counters) {
+        // No window ends in a tick that has a plan to apply.
+        self.emf_check.restart();
         if let Some(motor) = &plan.motor {
             self.motor = Motor::new(motor);
+            self.emf_check = EmfCheck::default();
         }
-        // No window ends in a tick that has a plan to apply.
-        self.emf_check = EmfCheck::default();
         // Counts from the zero would be another angle.
         self.zeroed &= plan.rad_per_count == self.rad_per_count;
         self.rad_per_count = plan.rad_per_count;

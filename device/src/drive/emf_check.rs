@@ -92,6 +92,11 @@ impl EmfCheck {
         contradicts
     }
 
+    /// A commit takes effect: another window begins, and what the one before it said stays.
+    pub fn restart(&mut self) {
+        self.ticks = None;
+    }
+
     fn begin(&mut self, tick: &Tick) {
         self.ticks = Some(0);
         (self.first_a, self.last_a) = (tick.current_a, tick.current_a);

@@ -13,10 +13,6 @@ use crepitus_protocol::Fault;
 /// Largest current for a second, A: 6.5 N·m at the hand.
 const SHORT_A: f64 = 1.37;
 
-/// Smallest sum that is a fault, A²·s, for a current that may flow for ever and is
-/// the largest.
-const LEAST_A2S: f64 = 0.1;
-
 /// Coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct OverloadPlan {
@@ -31,7 +27,7 @@ impl OverloadPlan {
     #[expect(clippy::cast_possible_truncation, reason = "rounded to f32, once")]
     pub fn new(continuous_a: f64, tick_s: f64) -> Self {
         let continuous_a2 = continuous_a * continuous_a;
-        let most_a2s = (SHORT_A * SHORT_A - continuous_a2).max(LEAST_A2S);
+        let most_a2s = SHORT_A * SHORT_A - continuous_a2;
         Self {
             continuous_a2: continuous_a2 as f32,
             most: (most_a2s / tick_s) as f32,
@@ -128,7 +124,32 @@ mod tests {
     #[test]
     fn a_current_that_is_no_number_counts_as_none() {
         assert_eq!(until(0.95, constant(f32::NAN)), None);
-        let ticks = until(1.37, constant(1.4)).unwrap();
-        assert!(ticks > 200, "{ticks}");
+    }
+
+    /// Whatever a motor bears for ever by its parameters, the gear bears its short-time torque for a second.
+    #[test]
+    fn no_parameter_switches_it_off() {
+        let named = |spec: &&Parameter| spec.group == "motor" && spec.key == "continuous_a";
+        let spec = PARAMETERS.iter().find(named).unwrap();
+        for n in 0..=100 {
+            let continuous_a = spec.min + (spec.max - spec.min) * f64::from(n) / 100.0;
+            let ticks = until(continuous_a, constant(1.37)).unwrap();
+            assert!(ticks <= 202, "{continuous_a} A: {ticks}");
+        }
+    }
+
+    /// What is warm stays warm over commits.
+    #[test]
+    fn a_commit_forgets_nothing() {
+        let plan = |continuous_a| OverloadPlan::new(continuous_a, TICK_S);
+        let mut overload = Overload::new(&plan(0.95));
+        for _ in 0..190 {
+            assert_eq!(overload.tick(Some(1.37)), None);
+        }
+        for continuous_a in [0.01, 0.95] {
+            overload.change(&plan(continuous_a));
+        }
+        let more = (1..100).find(|_| overload.tick(Some(1.37)).is_some());
+        assert!(more.is_some_and(|ticks| ticks < 15), "{more:?}");
     }
 }

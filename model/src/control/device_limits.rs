@@ -108,7 +108,7 @@ settings! {
             id: 34 disarmed,
             symbol: "Ic",
             unit: "A",
-            range: 0.01..=1.37,
+            range: 0.01..=0.95,
             default: 0.95,
             meaning: "current that gear and motor bear for ever: 4.5 N·m at a hand that back-drives the gear; \
                       the largest current for a second",

@@ -40,7 +40,7 @@ const LIMITS: [Limits; 2] = [
     Limits {
         flash: Flash::ZeroWaitStates,
         share: 40,
-        commit_share: 46,
+        commit_share: 45,
         cold_share: 39,
         render_cycles: 900,
     },
