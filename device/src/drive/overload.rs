@@ -69,6 +69,8 @@ impl Overload {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_model::control::device_limits::MotorSettings;
+    use crepitus_model::parameters::{ParameterSpec, Tabled};
 
     /// A coarse tick, s: 1 s is 200 of them.
     const TICK_S: f64 = 5e-3;
@@ -129,8 +131,8 @@ mod tests {
     /// Whatever a motor bears for ever by its parameters, the gear bears its short-time torque for a second.
     #[test]
     fn no_parameter_switches_it_off() {
-        let named = |spec: &&Parameter| spec.group == "motor" && spec.key == "continuous_a";
-        let spec = PARAMETERS.iter().find(named).unwrap();
+        let named = |spec: &&ParameterSpec| spec.key == "continuous_a";
+        let spec = MotorSettings::TABLE.iter().find(named).unwrap();
         for n in 0..=100 {
             let continuous_a = spec.min + (spec.max - spec.min) * f64::from(n) / 100.0;
             let ticks = until(continuous_a, constant(1.37)).unwrap();

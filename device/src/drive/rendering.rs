@@ -31,8 +31,6 @@ pub struct Rendering {
     /// The joint is removed once it has settled.
     is_removing: bool,
     is_settling: bool,
-    /// Of the last run.
-    last_tick: Option<u32>,
     /// Speed of the last tick.
     omega_rad_s: f32,
     stages: Stages,
@@ -53,7 +51,6 @@ impl Rendering {
             ),
             is_removing: false,
             is_settling: false,
-            last_tick: None,
             omega_rad_s: 0.0,
         };
         rendering.apply(plan, 0.0);
@@ -85,11 +82,7 @@ impl Rendering {
     /// Runs one tick with the encoder's counter as the tick begins. True if a plan
     /// is due: then [`Self::take_over`] follows.
     pub fn tick(&mut self, counter: u32, exchange: &Exchange) -> bool {
-        let mut turn = exchange.turn();
-        // A second run in one turn: its timer is too fast. With the number of another tick it is late.
-        let is_twice = self.last_tick == Some(turn.tick);
-        self.last_tick = Some(turn.tick);
-        turn.tick = turn.tick.wrapping_sub(u32::from(is_twice));
+        let turn = exchange.turn();
         let sampled = self.sampler.sample(counter);
         self.omega_rad_s = sampled.omega_rad_s;
         let rendered = self.render(&turn, &sampled);

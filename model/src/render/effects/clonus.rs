@@ -386,14 +386,19 @@ impl<F: Real> Clonus<F> {
     }
 
     /// The same where the joint returns within this tick: only a beat whose time came before.
-    #[cold]
+    #[inline]
     fn pace_until_let_go(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
-        let ticks = F::from_whole(u64::from(travel.ticks));
-        let let_go_since = (F::ONE - travel.reaches(&self.stop_place())) * ticks;
         let late = self.interval_since.ticks() - self.interval;
-        if late >= let_go_since {
+        if late >= F::ZERO && late >= self.let_go_since(travel) {
             self.next(late, F::ZERO, travel, on_change);
         }
+    }
+
+    /// How long ago the joint has returned within this tick, ticks.
+    #[cold]
+    fn let_go_since(&self, travel: &Travel<F>) -> F {
+        let fraction = travel.reaches(&self.stop_place());
+        (F::ONE - fraction) * F::from_whole(u64::from(travel.ticks))
     }
 
     /// Where the muscle is let go.

@@ -154,20 +154,6 @@ fn a_timer_of_the_model_at_half_its_rate() {
     assert_eq!(drive_fault(&mut host), Fault::RenderingLate.code());
 }
 
-/// Two results in a turn, the second of which has the number of another tick: it would be time that runs twice
-/// as fast.
-#[test]
-fn a_timer_of_the_model_at_twice_its_rate() {
-    let Some(mut host) = under_torque() else {
-        return;
-    };
-    host.board.mcu_mut().poke(RENDER_RELOAD, 4_200 / 2 - 1);
-    let halves = host.halves_until_off(4 * limit(Fault::RenderingLate));
-    println!("timer of the model at twice its rate: off after {halves} half ticks");
-    host.run(200);
-    assert_eq!(drive_fault(&mut host), Fault::RenderingLate.code());
-}
-
 #[test]
 fn a_timer_of_the_command_at_another_rate() {
     for reload in [3_500, 5_000] {
