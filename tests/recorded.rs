@@ -565,11 +565,13 @@ fn a_symptom_of_a_recording_is_drawn_with_its_limits() {
         "even resistance",
         "On examination: lead-pipe rigidity",
         "0.80 N·m against bending",
-        "of everything that was rendered together",
     ] {
         assert!(page.contains(words), "{words}");
     }
-    assert!(!page.contains("Clasp-knife"));
+    // Nothing else was on, crepitus neither.
+    for words in ["Clasp-knife", "rendered together", "broke loose"] {
+        assert!(!page.contains(words), "{words}");
+    }
     // Before it is armed a symptom has no phase, which is no broken row.
     assert!(!page.contains("not finite"));
 }

@@ -1,8 +1,9 @@
 //! Parameters over a recording: by name, and each time only what has changed.
 
+use crepitus_model::parameters::Source;
 use crepitus_model::{Convention, Parameters, Restart, Settings};
 use crepitus_protocol::Values;
-use crepitus_protocol::parameters::{self, Kind, Parameter};
+use crepitus_protocol::parameters::{self, Kind, Parameter, id};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
@@ -102,8 +103,11 @@ impl InForce<'_> {
         values_of(&self.known)
     }
 
-    /// The settings of the stick-slip joint, if they are known.
+    /// The settings of the stick-slip joint, if they are known and it is on.
     pub fn joint_settings(&self) -> Option<Settings> {
+        if !self.values()?.is_on(id::CREPITUS) {
+            return None;
+        }
         Some(Settings {
             parameters: Parameters {
                 inertia_kg_m2: self.number("crepitus.inertia_kg_m2")?,
@@ -170,7 +174,6 @@ pub(crate) fn values_of(known: &Named) -> Values {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_protocol::parameters::id;
 
     fn set(revision: u32, first_row: u64, values: &Value) -> ParameterSet {
         ParameterSet {
@@ -230,6 +233,23 @@ mod tests {
         assert_eq!(at(80_000), (true, Some(0.25), Some(400.0)));
         assert_eq!(at(170_000), (true, Some(0.2), Some(900.0)));
         assert_eq!(at(200_000), (true, None, None));
+    }
+
+    #[test]
+    fn a_joint_that_is_off_has_no_settings() {
+        let all = Value::Object(named_values(&Values::default()));
+        let history = History(vec![
+            set(1, 0, &all),
+            set(2, 10, &json!({ "crepitus.render": "off" })),
+            set(3, 20, &json!({ "crepitus.render": "on" })),
+            set(4, 30, &Value::Null),
+        ]);
+        let mut in_force = history.in_force();
+        let is_known = |row| {
+            in_force.at(row);
+            in_force.joint_settings().is_some()
+        };
+        assert_eq!([0, 10, 20, 30].map(is_known), [true, false, true, false]);
     }
 
     #[test]

@@ -6,38 +6,43 @@ use crate::parameters::History;
 use crate::row::Row;
 use crepitus_model::parameters::Source;
 use crepitus_model::render::effects::{EffectSettings, EffectSpec, SPECS};
-use crepitus_protocol::parameters::find;
+use crepitus_protocol::parameters::{self, find};
 use crepitus_protocol::{LimitReason, Values};
 use crepitus_scene::trace::{Column, ColumnKind};
 
 /// The columns that every report of a recording draws.
-const ALWAYS: [Column; 8] = {
-    const fn number(name: &'static str) -> Column {
-        Column {
-            name,
-            kind: ColumnKind::Number,
-        }
+const ALWAYS: [Column; 5] = [
+    number("t_s"),
+    number("angle_rad"),
+    number("omega_rad_s"),
+    number("torque_nm"),
+    number("motor_torque_nm"),
+];
+
+/// The columns of crepitus.
+const OBJECT: [Column; 3] = [
+    Column {
+        name: "phase",
+        kind: ColumnKind::Phase,
+    },
+    number("theta_rad"),
+    number("theta_dot_rad_s"),
+];
+
+const fn number(name: &'static str) -> Column {
+    Column {
+        name,
+        kind: ColumnKind::Number,
     }
-    [
-        number("t_s"),
-        number("angle_rad"),
-        number("omega_rad_s"),
-        Column {
-            name: "phase",
-            kind: ColumnKind::Phase,
-        },
-        number("theta_rad"),
-        number("theta_dot_rad_s"),
-        number("torque_nm"),
-        number("motor_torque_nm"),
-    ]
-};
+}
 
 /// See the module.
 #[derive(Debug)]
 pub struct ReportColumns {
     /// Of the symptoms whose settings were the same whenever they were on.
     settings: EffectSettings,
+    /// Crepitus was on at any time, or may have been.
+    has_crepitus: bool,
     /// The symptoms that were on at any time.
     symptoms: Vec<&'static EffectSpec>,
     /// The vibration actuator was.
@@ -49,9 +54,9 @@ impl ReportColumns {
     pub const ALWAYS: usize = ALWAYS.len();
 
     /// Of a recording with these parameters.
-    pub fn of(parameters: &History) -> Self {
-        let mut in_force = parameters.in_force();
-        let sets = parameters.0.iter().filter_map(|set| {
+    pub fn of(history: &History) -> Self {
+        let mut in_force = history.in_force();
+        let sets = history.0.iter().filter_map(|set| {
             in_force.at(set.first_row);
             in_force.values()
         });
@@ -73,8 +78,13 @@ impl ReportColumns {
                 }
             }
         }
+        let is_unknown = sets.len() < history.0.len();
         Self {
             settings: EffectSettings::read(&unchanged),
+            has_crepitus: is_unknown
+                || sets
+                    .iter()
+                    .any(|values| values.is_on(parameters::id::CREPITUS)),
             symptoms,
             has_coil: sets
                 .iter()
@@ -87,8 +97,8 @@ impl ReportColumns {
         self.settings
     }
 
-    /// Those of every recording, the phase of each symptom, and the current of the vibration
-    /// actuator's coil.
+    /// Those of every recording, those of crepitus, the phase of each symptom, and the current of
+    /// the vibration actuator's coil.
     pub fn columns(&self) -> Vec<Column> {
         let phases = self.symptoms.iter().filter_map(|spec| spec.phases);
         let phases = phases.map(|phases| Column {
@@ -99,23 +109,30 @@ impl ReportColumns {
             name: "coil_current_a",
             kind: ColumnKind::Number,
         });
-        ALWAYS.into_iter().chain(phases).chain(coil).collect()
+        let object = self.has_crepitus.then_some(OBJECT);
+        let object = object.into_iter().flatten();
+        let first = ALWAYS.into_iter().chain(object);
+        first.chain(phases).chain(coil).collect()
     }
 
-    /// Their values in a row, in the place of what `values` held; those of effects are NaN while
-    /// nothing is rendered.
+    /// Their values in a row, in the place of what `values` held; those of symptoms and coil are
+    /// NaN while nothing is rendered, those of the object where its parameters are not in force.
     pub fn read(&self, row: &Row, derived: &Derived, values: &mut Vec<f64>) {
         values.clear();
         values.extend([
             row.time_s,
             row.angle_rad,
             f64::from(row.omega_rad_s),
-            f64::from(row.flags.phase_sign()),
-            derived.object.theta_rad,
-            derived.object.theta_dot_rad_s,
             f64::from(row.model_torque_nm),
             derived.motor_torque_nm,
         ]);
+        if self.has_crepitus {
+            values.extend([
+                f64::from(row.flags.phase_sign()),
+                derived.object.theta_rad,
+                derived.object.theta_dot_rad_s,
+            ]);
+        }
         let is_armed = row.flags.limit() != LimitReason::NotArmed;
         let phases = row.phases;
         values.extend(self.symptoms.iter().map(|spec| {
@@ -197,12 +214,35 @@ mod tests {
         let columns = effects.columns();
         let names: Vec<&str> = columns.iter().map(|c| c.name).collect();
         assert_eq!(
-            names[ReportColumns::ALWAYS..],
+            names[ReportColumns::ALWAYS + OBJECT.len()..],
             ["range_limit_phase", "lead_pipe_phase"]
         );
         let none = ReportColumns::of(&History(vec![set(&off, 0)]));
-        assert_eq!(none.columns(), ALWAYS);
+        assert_eq!(none.columns(), [&ALWAYS[..], &OBJECT].concat());
         assert_eq!(none.settings(), EffectSettings::default());
+    }
+
+    #[test]
+    fn the_object_has_columns_unless_crepitus_was_off_all_the_time() {
+        let on = Values::default();
+        let mut off = on;
+        off.set(parameters::id::CREPITUS, 0.0);
+        let unknown = ParameterSet {
+            values: None,
+            ..set(&off, 10)
+        };
+        for (sets, has_object) in [
+            (vec![set(&off, 0)], false),
+            (vec![set(&off, 0), set(&off, 10)], false),
+            (vec![set(&off, 0), set(&on, 10)], true),
+            (vec![set(&off, 0), unknown], true),
+        ] {
+            let effects = ReportColumns::of(&History(sets));
+            let columns = effects.columns();
+            let found = columns.iter().any(|column| column.name == "phase");
+            assert_eq!(found, has_object);
+            assert_eq!(values(&effects, &Row::default()).len(), columns.len());
+        }
     }
 
     #[test]
@@ -233,11 +273,12 @@ mod tests {
             phases: phases.expect("a phase"),
             ..Row::default()
         };
-        assert_eq!(values(&effects, &row)[ReportColumns::ALWAYS..], [1.0]);
+        assert_eq!(values(&effects, &row).last(), Some(&1.0));
         let not_armed = Row {
             flags: SampleFlags::default().with_limit(LimitReason::NotArmed),
             ..row
         };
-        assert!(values(&effects, &not_armed)[ReportColumns::ALWAYS].is_nan());
+        let not_armed = values(&effects, &not_armed);
+        assert!(not_armed.last().is_some_and(|phase| phase.is_nan()));
     }
 }

@@ -337,7 +337,7 @@ fn caption(symptom: &Symptom, drawn: &Drawn) -> String {
     } else if symptom.words.has_changes() || symptom.shows_all() {
         caption += " Its settings changed, or are not known: no limits are drawn.";
     }
-    if symptom.shows_all() {
+    if symptom.shares_torque() {
         caption += " The recording has the resistance of everything that was rendered together.";
     }
     if symptom.path.strokes().is_none() {

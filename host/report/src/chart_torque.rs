@@ -24,17 +24,16 @@ pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     }
     let torque = figures.whole.torque.points();
     let (low, high) = extent(torque.iter().map(|p| p.y));
-    let breaks = figures.envelope.breaks();
+    let object = if figures.has_object {
+        format!("; the object {}", breaks(figures.envelope.breaks()))
+    } else {
+        String::new()
+    };
     let numbers = format!(
-        "It ranges from {} to {} N·m with a mean of {} N·m; the object {}.",
+        "It ranges from {} to {} N·m with a mean of {} N·m{object}.",
         rounded(low),
         rounded(high),
         rounded(figures.envelope.mean()),
-        match breaks {
-            0 => "never broke loose".to_owned(),
-            1 => "broke loose once".to_owned(),
-            n => format!("broke loose {} times", count(n)),
-        }
     );
     let label = "Torque of the joint over the whole run";
     let (panels, mut legend, caption) = if figures.whole.overflowed() {
@@ -53,9 +52,13 @@ pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
         (
             vec![line(figures, &torque)],
             vec![Key::new(Sign::Line(TORQUE), "torque")],
-            "The torque of the joint; positive torque opposes flexion. The background \
-             shows the phase of the imaginary object: where it sticks the torque rises with \
-             the angle like that of a spring, where it slips the torque stays at Tk.",
+            if figures.has_object {
+                "The torque of the joint; positive torque opposes flexion. The background \
+                 shows the phase of the imaginary object: where it sticks the torque rises with \
+                 the angle like that of a spring, where it slips the torque stays at Tk."
+            } else {
+                "The torque of the joint; positive torque opposes flexion."
+            },
         )
     };
     if figures.has_object {
@@ -72,6 +75,15 @@ pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
         charts: vec![Chart::full(stack(paper.width(960.0), label, panels))],
         caption: format!("{caption} {numbers}"),
     })
+}
+
+/// How often the object broke loose.
+fn breaks(number: u64) -> String {
+    match number {
+        0 => "never broke loose".to_owned(),
+        1 => "broke loose once".to_owned(),
+        n => format!("broke loose {} times", count(n)),
+    }
 }
 
 fn line<'f>(figures: &'f Figures, torque: &'f [Point]) -> Panel<'f> {

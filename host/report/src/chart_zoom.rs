@@ -13,6 +13,7 @@ use crate::collector::Figures;
 use crate::levels;
 use crate::phases::{self, shade};
 use crate::plant::{LEG, Plant};
+use crate::symptoms::Symptom;
 use crate::window::Window;
 
 const TORQUE_HEIGHT: f64 = 290.0;
@@ -66,12 +67,20 @@ pub(crate) fn windows(figures: &Figures) -> Vec<Titled<'_>> {
 
 pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     let windows = windows(figures);
-    if windows.is_empty() {
+    let any = |is: fn(&Window) -> bool| windows.iter().any(|titled| is(titled.window));
+    let has_motor = any(|window| !window.motor.is_empty());
+    // Without object and motor it would be the figure of the torque again.
+    if windows.is_empty() || !(figures.has_object || has_motor) {
         return None;
     }
+    let shown = if figures.has_object {
+        "A few cycles"
+    } else {
+        "Torque of model and motor"
+    };
     let mut charts = Vec::new();
     for Titled { title, window } in &windows {
-        let svg = chart(figures, window, &format!("A few cycles: {title}"), paper);
+        let svg = chart(figures, window, &format!("{shown}: {title}"), paper);
         charts.push(Chart {
             heading: Some(title.clone()),
             svg,
@@ -84,8 +93,7 @@ pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     } else {
         vec![Key::new(Sign::Line(TORQUE), "torque")]
     };
-    let any = |is: fn(&Window) -> bool| windows.iter().any(|titled| is(titled.window));
-    if any(|window| !window.motor.is_empty()) {
+    if has_motor {
         legend.push(Key::new(Sign::Line(MOTOR), "torque of the motor"));
     }
     if any(feels) {
@@ -99,7 +107,7 @@ pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
             titled.window.spans(from, to).into_iter().map(|s| s.phase)
         })));
     }
-    let mut caption = if happened {
+    if happened {
         legend.extend(MARK_KEYS.into_iter().filter(|key| {
             // Reversals are rare: no key without one.
             key.text != "reverse"
@@ -107,21 +115,9 @@ pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
                     .iter()
                     .any(|w| w.window.count(EventKind::Reverse) > 0)
         }));
-        "Single stick-slip cycles. While the object sticks (grey) the torque climbs from the \
-         restart torque to the static limit Ts; there it breaks, the torque falls to Tk, and \
-         the object swings freely on its spring until it sticks again: when its velocity meets \
-         that of the shaft, or, in the frozen convention, when it would meet that of a steady \
-         shaft. The climbs and falls are what is felt as crepitus; the time between them is \
-         set by spring and inertia. Edges of the shading are the times of the events, not of \
-         the rows."
-    } else {
-        "The object never broke loose: the torque stayed within ±Ts and the object moved with \
-         the shaft all the time, like a spring."
     }
-    .to_owned();
-    if any(|window| !window.motor.is_empty())
-        && figures.plant.as_ref().is_some_and(Plant::has_stages)
-    {
+    let mut caption = words(figures, happened).to_owned();
+    if has_motor && figures.plant.as_ref().is_some_and(Plant::has_stages) {
         caption.push_str(
             " The motor's torque follows what is commanded: that of the model and what friction \
              compensation and bone shaping add.",
@@ -136,15 +132,37 @@ pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     }
     Some(Figure {
         name: "zoom",
-        title: if happened {
-            "A zoom on a few cycles"
-        } else {
-            "Torque and velocities"
+        title: match (happened, figures.has_object) {
+            (true, _) => "A zoom on a few cycles",
+            (false, true) => "Torque and velocities",
+            (false, false) => "Torque of model and motor",
         },
         legend,
         charts,
         caption,
     })
+}
+
+/// What the charts show.
+fn words(figures: &Figures, happened: bool) -> &'static str {
+    let mut symptoms = figures.symptoms.iter().flat_map(|all| &all.list);
+    if !figures.has_object {
+        "What the model asks for, and the torque of the motor at the joint, from its current."
+    } else if happened {
+        "Single stick-slip cycles. While the object sticks (grey) the torque climbs from the \
+         restart torque to the static limit Ts; there it breaks, the torque falls to Tk, and \
+         the object swings freely on its spring until it sticks again: when its velocity meets \
+         that of the shaft, or, in the frozen convention, when it would meet that of a steady \
+         shaft. The climbs and falls are what is felt as crepitus; the time between them is \
+         set by spring and inertia. Edges of the shading are the times of the events, not of \
+         the rows."
+    } else if symptoms.any(Symptom::shows_all) {
+        // Ts bounds a part of the torque alone.
+        "The object never broke loose: it moved with the shaft all the time, like a spring."
+    } else {
+        "The object never broke loose: the torque stayed within ±Ts and the object moved with \
+         the shaft all the time, like a spring."
+    }
 }
 
 /// Whether the torque at the hand is known for the cycles.

@@ -2,8 +2,10 @@
 
 use crate::collector::Figures;
 use crate::symptoms::found::{Bout, Found, Met};
+use crate::symptoms::movement::Movement;
 use crate::symptoms::{Symptom, Symptoms};
 use crepitus_model::render::effects::EffectSettings;
+use crepitus_model::render::effects::clonus::ClonusSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_plot::number::{count, fixed, rounded};
 use crepitus_plot::page::Section;
@@ -33,10 +35,10 @@ fn section(symptom: &Symptom, settings: &EffectSettings) -> Section {
         "range-limit" => ends(found, &mut rows),
         "spasticity" => catches(found, settings, &mut rows),
         "clasp-knife" => collapses(found, &mut rows),
-        "clonus" => beats(found, &mut rows),
+        "clonus" => beats(found, settings.clonus.as_ref(), &mut rows),
         _ => {}
     }
-    rates(found, &mut rows);
+    rates(&found.movement, &mut rows);
     let (nm, rad) = found.most;
     let against = if nm < 0.0 { "straightening" } else { "bending" };
     let largest = if nm == 0.0 {
@@ -57,7 +59,7 @@ fn section(symptom: &Symptom, settings: &EffectSettings) -> Section {
         );
         rows.push(row("taken by one movement to and fro", value));
     }
-    if symptom.shows_all() {
+    if symptom.shares_torque() {
         let value = "of everything that was rendered together".to_owned();
         rows.push(row("resistance", value));
     }
@@ -113,14 +115,24 @@ fn ends(found: &Found, rows: &mut Vec<Row>) {
             n => format!("; met {n} times"),
         };
         let value = format!(
-            "at {}, at {}; {} within {}{times}",
+            "at {}, at {}; {}{times}",
             angle(hardest.event.angle_rad),
             speed(hardest.event.omega_rad_s),
-            torque(hardest.most_nm),
-            angle(hardest.beyond_rad)
+            pressed(hardest)
         );
         rows.push((name.to_owned(), value));
     }
+}
+
+/// How soon an end had its largest torque, and how far the joint was pressed on.
+fn pressed(met: &Met) -> String {
+    let (within, beyond) = (angle(met.within_rad), angle(met.beyond_rad));
+    let on = if within == beyond {
+        String::new()
+    } else {
+        format!(", pressed on to {beyond}")
+    };
+    format!("{} within {within}{on}", torque(met.most_nm))
 }
 
 fn catches(found: &Found, settings: &EffectSettings, rows: &mut Vec<Row>) {
@@ -146,7 +158,10 @@ fn catches(found: &Found, settings: &EffectSettings, rows: &mut Vec<Row>) {
         rows.push((format!("{name} {n}"), value));
     }
     match caught.len() {
-        0 => rows.push(("catch".to_owned(), "none at these speeds".to_owned())),
+        0 => {
+            let value = "none: no stretch met the threshold".to_owned();
+            rows.push(("catch".to_owned(), value));
+        }
         n if n > MOST => rows.push(("catches".to_owned(), format!("{n} in all"))),
         _ => {}
     }
@@ -177,7 +192,7 @@ fn collapses(found: &Found, rows: &mut Vec<Row>) {
     }
 }
 
-fn beats(found: &Found, rows: &mut Vec<Row>) {
+fn beats(found: &Found, settings: Option<&ClonusSettings>, rows: &mut Vec<Row>) {
     for (n, bout) in (1..).zip(found.bouts.iter().take(MOST)) {
         let event = &bout.start;
         let stretch = format!("{} at {}", angle(event.angle_rad), speed(event.omega_rad_s));
@@ -187,7 +202,15 @@ fn beats(found: &Found, rows: &mut Vec<Row>) {
         ));
     }
     if found.bouts.is_empty() {
-        let value = "none: no stretch was quick enough".to_owned();
+        let threshold = settings.map_or_else(
+            || "the threshold".to_owned(),
+            |settings| {
+                let hold = rounded(settings.hold_deg);
+                let least = rounded(settings.start_velocity_deg_s);
+                format!("{hold}° at {least} °/s or more")
+            },
+        );
+        let value = format!("none: no stretch passed {threshold}");
         rows.push(("beats".to_owned(), value));
     }
     let pairs = found.beats.iter().zip(found.beats.iter().skip(1));
@@ -241,24 +264,19 @@ fn lasted(bout: &Bout, beats_are_told: bool) -> String {
     )
 }
 
-fn rates(found: &Found, rows: &mut Vec<Row>) {
-    for rate in &found.rates {
+fn rates(movement: &Movement, rows: &mut Vec<Row>) {
+    for rate in &movement.rates {
         let name = if rate.word == Word::Snap {
             "snaps"
         } else {
             "gives"
         };
-        let moving_s = found.moving_s;
-        let value = if moving_s > 0.0 {
-            format!(
-                "{}: {} a second while it moved, at a mean speed of {}",
-                count(rate.count),
-                rounded(rate.count as f64 / moving_s),
-                speed(found.travel_rad / moving_s)
-            )
-        } else {
-            count(rate.count)
-        };
+        let value = format!(
+            "{}: {} a second while it moved, at a mean speed of {}",
+            count(rate.count),
+            rounded(rate.count as f64 / movement.moving_s),
+            speed(movement.travel_rad / movement.moving_s)
+        );
         rows.push((name.to_owned(), value));
     }
 }

@@ -8,6 +8,7 @@
 pub(crate) mod found;
 pub(crate) mod limits;
 pub(crate) mod loops;
+pub(crate) mod movement;
 pub(crate) mod path;
 pub(crate) mod timeline;
 pub(crate) mod words;
@@ -76,6 +77,11 @@ impl Symptom {
     /// Whether its torque is that of all symptoms together.
     pub(crate) fn shows_all(&self) -> bool {
         self.places.torque.is_none()
+    }
+
+    /// Whether other effects are in that torque, too.
+    pub(crate) fn shares_torque(&self) -> bool {
+        !self.found.beats_are_told
     }
 
     fn gap(&mut self) {
@@ -184,9 +190,9 @@ impl Symptoms {
                 list.push(Symptom::new(words, places));
             }
         }
-        // The torque of all is its own where there is nothing else.
+        // The torque of all is its own where there is nothing else, crepitus neither.
         if let [symptom] = &mut list[..] {
-            symptom.found.beats_are_told |= setup.levels.is_none();
+            symptom.found.beats_are_told |= at("phase").is_none();
         }
         let own = list.iter().filter(|symptom| !symptom.shows_all()).count();
         let together = (own > 1 || (own == 1 && total.is_some())).then(|| Together {

@@ -10,6 +10,7 @@ use std::path::Path;
 
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_report::{Collector, Figures, Paper, Setup, Text, html, pictures};
+use crepitus_scene::Scene;
 use fixture::symptom::{EXAMINED, Item, STEPPED, ran, scene};
 use markup::{
     assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, charts, count,
@@ -17,8 +18,11 @@ use markup::{
 
 fn figures(place: usize, solver: &str, knows_settings: bool) -> Figures {
     let (effects, speeds, ends) = EXAMINED[place];
-    let scene = scene(effects, speeds, ends, solver);
-    let (columns, items) = ran(&scene);
+    examined(&scene(effects, speeds, ends, solver), knows_settings)
+}
+
+fn examined(scene: &Scene, knows_settings: bool) -> Figures {
+    let (columns, items) = ran(scene);
     let mut collector = Collector::new(&Setup {
         columns: &columns,
         rows_expected: items.len() as u64,
@@ -74,7 +78,7 @@ const EXPECTED: [(&[&str], &[&str]); 9] = [
             "limit of the end-feel",
             "in the end-feel",
             "the end yields",
-            "4.00 N·m within 6.0°; met 2 times",
+            "4.00 N·m within 2.9°, pressed on to 6.0°; met 2 times",
         ],
     ),
     (
@@ -198,4 +202,38 @@ fn without_settings_no_limit_is_drawn_and_the_page_says_so() {
     assert!(!page.contains("threshold of a slow stretch"));
     assert!(page.contains("caught at 52.5° at 90 °/s;"));
     assert_eq!(count(&page, "<h2>Angle of catch against speed</h2>"), 1);
+}
+
+#[test]
+fn an_end_is_as_hard_however_far_it_is_pressed() {
+    for (to_deg, pressed) in [(92.0, "2.0°"), (95.0, "5.0°")] {
+        let effects = "[effects.range-limit]\npreset = \"bone-block\"";
+        let scene = scene(effects, &[60.0], (40.0, to_deg), STEPPED);
+        let page = html(&Text::default(), &examined(&scene, true));
+        let expected = format!("4.00 N·m within 0.8°, pressed on to {pressed}<");
+        assert!(page.contains(&expected), "{expected}");
+    }
+}
+
+#[test]
+fn a_stretch_without_an_answer_says_which_threshold_it_did_not_meet() {
+    for (effects, speed, ends, expected) in [
+        // Quick enough, and not far enough.
+        (
+            "[effects.clonus]",
+            300.0,
+            (10.0, 55.0),
+            "none: no stretch passed 60° at 100 °/s or more",
+        ),
+        (
+            "[effects.spasticity]",
+            90.0,
+            (10.0, 30.0),
+            "none: no stretch met the threshold",
+        ),
+    ] {
+        let scene = scene(effects, &[speed], ends, STEPPED);
+        let page = html(&Text::default(), &examined(&scene, true));
+        assert!(page.contains(expected), "{expected}");
+    }
 }

@@ -2,6 +2,7 @@
 //! how often.
 
 use crate::symptoms::loops::Loops;
+use crate::symptoms::movement::Movement;
 use crepitus_scene::trace::{SymptomEvent, Word};
 
 /// A catch, a reflex, a collapse, or the end of the range.
@@ -10,10 +11,14 @@ pub(crate) struct Met {
     pub(crate) event: SymptomEvent,
     /// The largest torque since, as a magnitude, N·m: of a catch until it releases.
     pub(crate) most_nm: f64,
-    /// How far the joint went on from there, rad.
+    /// How far the joint went on from there until it had that torque, rad.
+    pub(crate) within_rad: f64,
+    /// How far it went on in all, rad.
     pub(crate) beyond_rad: f64,
     /// When a collapse had left a fifth, s after it.
     pub(crate) fifth_s: Option<f64>,
+    /// The torque at `within_rad`, N·m.
+    within_nm: f64,
     is_open: bool,
 }
 
@@ -36,13 +41,6 @@ pub(crate) struct Beat {
     pub(crate) number: u32,
 }
 
-/// How often something happens.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Rate {
-    pub(crate) word: Word,
-    pub(crate) count: u64,
-}
-
 /// See the module.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Found {
@@ -51,20 +49,16 @@ pub(crate) struct Found {
     /// Whether a beat shows: not in the torque of several effects together.
     pub(crate) beats_are_told: bool,
     pub(crate) beats: Vec<Beat>,
-    pub(crate) rates: Vec<Rate>,
+    pub(crate) movement: Movement,
     pub(crate) loops: Loops,
     /// The largest torque in either sense, N·m, and the angle there, rad.
     pub(crate) most: (f64, f64),
     /// Events that are counted but not kept.
     pub(crate) left_out: u64,
-    /// How far and how long the joint moved.
-    pub(crate) travel_rad: f64,
-    pub(crate) moving_s: f64,
-    last: Option<(f64, f64)>,
 }
 
-/// Slower, a joint is at rest: one degree a second.
-const SLOWEST_RAD_S: f64 = std::f64::consts::PI / 180.0;
+/// Torques that are one for an examiner, N·m.
+const SAME_NM: f64 = 0.005;
 
 /// A catch has released when so much of its torque is left.
 const RELEASED: f64 = 0.9;
@@ -84,7 +78,7 @@ impl Found {
     /// Rows are missing before the next one.
     pub(crate) fn gap(&mut self) {
         self.loops.gap();
-        self.last = None;
+        self.movement.gap();
         if let Some(met) = self.met.last_mut() {
             met.is_open = false;
         }
@@ -92,14 +86,7 @@ impl Found {
 
     pub(crate) fn row(&mut self, time_s: f64, angle_rad: f64, nm: f64) {
         self.loops.push(angle_rad, nm);
-        if let Some((last_s, last_rad)) = self.last {
-            let (passed_s, moved_rad) = (time_s - last_s, (angle_rad - last_rad).abs());
-            if moved_rad > SLOWEST_RAD_S * passed_s {
-                self.travel_rad += moved_rad;
-                self.moving_s += passed_s;
-            }
-        }
-        self.last = Some((time_s, angle_rad));
+        self.movement.row(time_s, angle_rad);
         if nm.abs() > self.most.0.abs() {
             self.most = (nm, angle_rad);
         }
@@ -125,7 +112,12 @@ impl Found {
                     bout.end = bout.end.or(Some((word, event.time_s)));
                 }
             }
-            (_, word @ (Word::Snap | Word::Give)) => self.count(word),
+            (_, word @ (Word::Snap | Word::Give)) => self.movement.count(word),
+            (_, Word::Cap) => {
+                if let Some(met) = self.met.last_mut() {
+                    met.row(event.time_s, event.angle_rad, event.torque_after_nm);
+                }
+            }
             _ => {}
         }
     }
@@ -141,11 +133,14 @@ impl Found {
             self.left_out += 1;
             return;
         }
+        let nm = event.torque_before_nm.abs();
         self.met.push(Met {
             event: *event,
-            most_nm: event.torque_before_nm.abs(),
+            most_nm: nm,
+            within_rad: 0.0,
             beyond_rad: 0.0,
             fifth_s: None,
+            within_nm: nm,
             is_open: true,
         });
     }
@@ -179,13 +174,6 @@ impl Found {
         bout.last_s = event.time_s;
     }
 
-    fn count(&mut self, word: Word) {
-        match self.rates.iter_mut().find(|rate| rate.word == word) {
-            Some(rate) => rate.count += 1,
-            None => self.rates.push(Rate { word, count: 1 }),
-        }
-    }
-
     /// Catches and onsets of a reflex.
     pub(crate) fn caught(&self) -> impl Iterator<Item = &Met> {
         let is_catch = |met: &&Met| matches!(met.event.word, Word::Catch | Word::Onset);
@@ -198,8 +186,9 @@ impl Met {
         if !self.is_open {
             return;
         }
-        let event = &self.event;
+        let event = self.event;
         let nm = nm.abs();
+        let beyond_rad = (angle_rad - event.angle_rad).abs();
         match event.word {
             Word::Release => {
                 if self.fifth_s.is_none() && nm <= 0.2 * event.torque_before_nm.abs() {
@@ -209,9 +198,13 @@ impl Met {
             Word::Catch if self.most_nm > 0.0 && nm < RELEASED * self.most_nm => {
                 self.is_open = false;
             }
-            _ => self.most_nm = self.most_nm.max(nm),
+            _ => {
+                self.most_nm = self.most_nm.max(nm);
+                if nm > self.within_nm + SAME_NM {
+                    (self.within_nm, self.within_rad) = (nm, beyond_rad);
+                }
+            }
         }
-        let beyond_rad = (angle_rad - event.angle_rad).abs();
         self.beyond_rad = self.beyond_rad.max(beyond_rad);
     }
 }

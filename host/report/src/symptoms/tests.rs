@@ -1,11 +1,11 @@
 //! Symptoms as their scenes run: what is found, what is drawn, how much is kept.
 
-use super::Symptoms;
 use super::found::{Found, Met};
 use super::limits;
 use super::path::Path;
 use super::timeline::Timeline;
 use super::words::Words;
+use super::{Symptom, Symptoms};
 use crate::channels::Setup;
 use crate::collector::{Collector, Figures};
 use crate::fixture::symptom::{EXAMINED, Item, STEPPED, ran, scene};
@@ -153,8 +153,10 @@ fn a_collapse_an_end_and_beats_are_found() {
     for (angle, expected) in angles.iter().zip([120.0, 10.0, 120.0, 10.0]) {
         near(*angle, expected, 0.01);
     }
-    near(met(&symptoms)[0].beyond_rad.to_degrees(), 6.0, 0.01);
-    near(met(&symptoms)[0].most_nm, 4.0, 1e-6);
+    let end = &met(&symptoms)[0];
+    near(end.beyond_rad.to_degrees(), 6.0, 0.01);
+    near(end.within_rad.to_degrees(), 0.05_f64.to_degrees(), 0.03);
+    near(end.most_nm, 4.0, 1e-6);
 
     let (_, symptoms) = examined(6, STEPPED);
     let Found { beats, bouts, .. } = &symptoms.list[0].found;
@@ -173,12 +175,57 @@ fn loops_and_rates_are_those_of_the_closed_forms() {
     let whole = symptoms.list[0].found.loops.latest().expect("two strokes");
     near(whole.area_j, 2.3876, 2e-3);
     let (_, symptoms) = examined(7, STEPPED);
-    let found = &symptoms.list[0].found;
-    let rate = found.rates[0];
+    let movement = &symptoms.list[0].found.movement;
+    let rate = movement.rates[0];
     // 1.5° from snap to snap, both ways.
     assert_eq!((rate.word, rate.count / 2), (Word::Snap, 40));
-    let degrees = found.travel_rad.to_degrees();
+    let degrees = movement.travel_rad.to_degrees();
     near(degrees, 120.0, 0.5);
+}
+
+/// Rows of a device: fourteen ticks from count to count, and teeth that never rest.
+#[test]
+fn gives_are_counted_while_the_joint_moves_however_fine_the_rows() {
+    const TICK_S: f64 = 5e-5;
+    const COUNT_RAD: f64 = 35.67e-6;
+    const TEETH_HZ: f64 = 6.25;
+    let names = [
+        "t_s",
+        "angle_rad",
+        "omega_rad_s",
+        "torque_nm",
+        "cogwheel_phase",
+    ];
+    let columns = names.map(|name| Column {
+        name,
+        kind: ColumnKind::Number,
+    });
+    let mut collector = Collector::new(&Setup {
+        columns: &columns,
+        rows_expected: 0,
+        row_step_s: TICK_S,
+        levels: None,
+        effects: EffectSettings::default(),
+    });
+    let speed = 10.0_f64.to_radians();
+    for tick in 0..400_000_u32 {
+        let time_s = f64::from(tick) * TICK_S;
+        // At rest for two seconds, there and back, at rest.
+        let there_s = (time_s - 2.0).clamp(0.0, 8.0);
+        let back_s = (time_s - 10.0).clamp(0.0, 8.0);
+        let counts = (speed * (there_s - back_s) / COUNT_RAD).floor();
+        let is_high = (time_s * TEETH_HZ).fract() < 0.5;
+        let phase = f64::from(u8::from(is_high));
+        collector.row(&[time_s, counts * COUNT_RAD, 0.0, phase, phase]);
+    }
+    let symptoms = collector.finish().symptoms.expect("one");
+    let movement = &symptoms.list[0].found.movement;
+    let rate = movement.rates[0];
+    assert_eq!((rate.word, movement.rates.len()), (Word::Give, 1));
+    near(rate.count as f64 / movement.moving_s, TEETH_HZ, 0.1);
+    let deg_s = (movement.travel_rad / movement.moving_s).to_degrees();
+    near(deg_s, 10.0, 0.1);
+    near(movement.moving_s, 16.0, 0.1);
 }
 
 #[test]
@@ -196,6 +243,30 @@ fn the_sum_is_kept_where_there_are_several() {
     // Beyond the end, and the rigidity.
     near(most, 1.2 + 4.0, 1e-3);
     assert!(examined(1, STEPPED).1.together.is_none());
+}
+
+#[test]
+fn the_torque_of_a_recording_is_the_symptoms_own_where_nothing_else_was_on() {
+    let names = [
+        "t_s",
+        "torque_nm",
+        "clonus_phase",
+        "lead_pipe_phase",
+        "phase",
+    ];
+    let columns = names.map(|name| Column {
+        name,
+        kind: ColumnKind::Number,
+    });
+    let shares = |columns: &[Column]| -> Vec<bool> {
+        let symptoms = collect(&EffectSettings::default(), columns, &[]).symptoms;
+        let list = symptoms.expect("a phase").list;
+        list.iter().map(Symptom::shares_torque).collect()
+    };
+    assert_eq!(shares(&columns[..3]), [false]);
+    assert_eq!(shares(&columns[..4]), [true, true]);
+    // With crepitus, also where its levels changed and are not drawn.
+    assert_eq!(shares(&[&columns[..3], &columns[4..]].concat()), [true]);
 }
 
 /// As a recording has them: the torque of all, and a phase.
@@ -345,11 +416,11 @@ fn memory_does_not_grow_with_the_run() {
             met,
             bouts,
             beats,
-            rates,
+            movement,
             ..
         } = &symptom.found;
         assert!(met.len() <= Found::MOST && bouts.len() <= Found::MOST);
-        assert!(beats.len() <= Found::MOST && rates.len() <= 2);
+        assert!(beats.len() <= Found::MOST && movement.rates.len() <= 2);
     }
     let of = |effect| found.list.iter().find(|s| s.words.effect() == effect);
     let clonus = of("clonus").expect("it is there");

@@ -225,7 +225,7 @@ fn first_time_s(first: &Row, books: &Books) -> f64 {
     (first.time_s - seconds(missing)).min(0.0)
 }
 
-/// The torque levels, if they were the same all the time.
+/// The torque levels, if crepitus was on with the same ones all the time.
 fn levels(parameters: &History) -> Option<TorqueLevels> {
     let mut in_force = parameters.in_force();
     let mut sets = parameters.0.iter().map(|set| {
@@ -275,7 +275,9 @@ fn in_brief(s: &RecordingSummary) -> String {
 mod tests {
     use super::*;
     use clap::Parser;
+    use crepitus_model::render::effects::Phases;
     use crepitus_protocol::management::Identity;
+    use crepitus_protocol::parameters::{find, id};
     use crepitus_protocol::telemetry::{Block, BlockFlags};
     use crepitus_protocol::{State, Values};
     use crepitus_recording::{Begin, Metadata, Recorder};
@@ -292,6 +294,14 @@ mod tests {
     /// The page of a recording: runs of blocks, each with its first tick, the drive's start and the
     /// number of blocks. The accounting begins at tick 1,000.
     fn page(runs: &[(u64, u16, u64)]) -> String {
+        let blocks = runs.iter().flat_map(|(first_tick, start, blocks)| {
+            (0..*blocks).map(move |n| block(first_tick + 20 * n, *start))
+        });
+        page_of(&Values::default(), blocks)
+    }
+
+    /// The page of a recording of these blocks under these parameters.
+    fn page_of(values: &Values, blocks: impl Iterator<Item = Block>) -> String {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a");
         let metadata = Metadata::new("a test", &Identity::default(), None);
@@ -302,11 +312,9 @@ mod tests {
             start: 1,
         };
         recorder.subscribed(begin).unwrap();
-        recorder.announce(Block::default().revision, &Values::default());
-        for (first_tick, start, blocks) in runs {
-            for n in 0..*blocks {
-                recorder.block(&block(first_tick + 20 * n, *start)).unwrap();
-            }
+        recorder.announce(Block::default().revision, values);
+        for block in blocks {
+            recorder.block(&block).unwrap();
         }
         recorder.finish().unwrap();
         let line = Line::parse_from([OsStr::new("report"), file.as_os_str()]);
@@ -333,6 +341,53 @@ mod tests {
             sample.model_torque_nm = 0.01 * f32::from(u8::try_from(tick % 50).unwrap());
         }
         block
+    }
+
+    /// Clonus: twenty beats, twenty a second, after a tenth of a second at rest.
+    fn beating(first_tick: u64) -> Block {
+        let mut block = Block {
+            first_tick,
+            flags: BlockFlags::new(State::Armed, true, 1),
+            ..Block::default()
+        };
+        let samples = block.samples.iter_mut().zip(&mut block.phases);
+        for ((sample, phases), tick) in samples.zip(first_tick - 1_000..) {
+            let since = tick.checked_sub(2_000);
+            let (name, nm) = match since.map(|since| (since / 1_000, since % 1_000)) {
+                None => ("ready", 0.0),
+                Some((1..=20, since)) if since < 450 => {
+                    let share = f32::from(u16::try_from(since).unwrap()) / 450.0;
+                    ("beating", 1.5 * (std::f32::consts::PI * share).sin())
+                }
+                Some((0..=20, _)) => ("beating", 0.0),
+                Some(_) => ("over", 0.0),
+            };
+            sample.count = i32::try_from(tick).unwrap();
+            sample.model_torque_nm = nm;
+            *phases = Phases::default().with_named("clonus", name).unwrap().into();
+        }
+        block
+    }
+
+    #[test]
+    fn a_recording_of_clonus_alone_has_its_beats_and_nothing_of_crepitus() {
+        let mut values = Values::default();
+        values.set(find("clonus.render").unwrap().0, 1.0);
+        let blocks = || (0..1_300).map(|n| beating(1_000 + 20 * n));
+        let beats = "20 beats in 1.0 s, ended by itself";
+        let shared = "of everything that was rendered together";
+        // With crepitus nobody knows whose torque it is.
+        let both = page_of(&values, blocks());
+        assert!(both.contains("beats that cannot be told apart") && both.contains(shared));
+        assert!(both.contains("Ts") && both.contains("broke loose"));
+        values.set(id::CREPITUS, 0.0);
+        let alone = page_of(&values, blocks());
+        for part in [beats, "Beats of clonus", "Torque of model and motor"] {
+            assert!(alone.contains(part), "{part}");
+        }
+        for part in ["Ts", "broke loose", "imaginary object", "rendered together"] {
+            assert!(!alone.contains(part), "{part}");
+        }
     }
 
     const BLANK: &str = "Blank between dotted lines";
