@@ -121,6 +121,44 @@ fn commands_that_arm_the_simulated_device_set_its_zero() {
     assert!(armed >= 3, "{armed}");
 }
 
+/// A page of the book.
+fn page(name: &str) -> String {
+    fs::read_to_string(repository().join("docs").join(name)).unwrap()
+}
+
+/// Tardieu's V3, 350 °/s, is faster than a device follows.
+#[test]
+fn pages_for_teachers_say_from_where_on_the_device_lets_go() {
+    let limit = 5.73_f64;
+    assert!(page("faults.md").contains(&format!("({limit} rad/s at 24 V)")));
+    let lets_go = format!("from {:.0} °/s on", limit.to_degrees());
+    for name in ["disorders.md", "symptoms.md", "lesson.md", "panel.md"] {
+        assert!(
+            page(name).to_lowercase().contains(&lets_go),
+            "{name}: {lets_go}"
+        );
+    }
+    let lessons = fs::read_dir(repository().join("lessons")).unwrap();
+    let mut texts: Vec<_> = lessons
+        .map(|lesson| fs::read_to_string(lesson.unwrap().path()).unwrap())
+        .collect();
+    texts.push(page("lesson.md"));
+    for text in texts {
+        assert!(!text.contains("as fast as you can"), "{text}");
+    }
+}
+
+/// What was asked for, and not reached or not in full, stands beside what there is.
+#[test]
+fn the_vibration_actuators_pages_say_how_far_what_was_asked_for_is_met() {
+    let hardware = page("hardware.md");
+    assert!(hardware.contains("Asked for were 30 €; it takes about 40 to 70 €."));
+    assert!(
+        page("vibration.md")
+            .contains("91.5 % of them at 0.1 rad/s, 93.5 % at 0.5 and 93.5 % at 1\n")
+    );
+}
+
 #[test]
 fn every_dependency_has_its_reason() {
     let manifest = fs::read_to_string(repository().join("Cargo.toml")).unwrap();

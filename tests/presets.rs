@@ -3,13 +3,13 @@
 
 mod support;
 
-use crepitus_scene::preset::shipped;
+use crepitus_scene::preset::{Disorder, Preset, shipped};
 use serde_json::{Value, json};
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Output;
 use support::served::Served;
-use support::{crepitus, names, run, stderr, stdout};
+use support::{crepitus, names, run, stderr, stdout, summary};
 
 /// A served device, and a folder for presets.
 struct Knee {
@@ -117,6 +117,90 @@ fn a_preset_is_a_whole_knee_in_one_commit() {
     let scene = knee.json(&["params", "apply", "slow-examination"]);
     assert_eq!(scene["off"], json!(["friction-compensation"]));
     assert_eq!(knee.values()["range.most_deg"], 110.0);
+}
+
+/// `--add` keeps only what the preset does not have.
+#[test]
+fn an_effect_that_was_on_and_gets_other_values_is_named() {
+    let knee = Knee::new();
+    let add = |preset| knee.done(&["params", "apply", preset, "--add"]);
+    knee.done(&["params", "apply", "bone-block"]);
+    let text = add("texture-bone-on-bone");
+    assert!(
+        text.contains("now on: texture\n") && text.contains("changed, on before: range-limit\n"),
+        "{text}"
+    );
+    let same = add("texture-bone-on-bone");
+    assert!(!same.contains("changed"), "{same}");
+    let back = knee.json(&["params", "apply", "bone-block", "--add"]);
+    assert_eq!(
+        (&back["on"], &back["off"], &back["changed"]),
+        (&json!([]), &json!([]), &json!(["range-limit"]))
+    );
+    // What goes off is not on after it.
+    let reset = knee.json(&["params", "reset"]);
+    assert_eq!(
+        (&reset["on"], &reset["changed"]),
+        (&json!(["crepitus"]), &json!([]))
+    );
+}
+
+/// Largest torque at the hand in a stretch from 10° to 110° at 10 deg/s, N·m.
+fn slow_stretch_nm(preset: &Preset, folder: &Path) -> f64 {
+    let name = &preset.name;
+    let effect = preset.effects().next().unwrap().name;
+    let scene = folder.join(format!("{name}.toml"));
+    let text = format!(
+        "version = 1\ntitle = \"A slow stretch\"\nduration_s = 10.0\n\n\
+         [motion]\nkind = \"constant\"\nfrom_deg = 10.0\nvelocity_rad_s = {}\n\n\
+         [solver]\nkind = \"exact-events\"\nstep_s = 1e-3\n\n\
+         [effects.{effect}]\npreset = \"{name}\"\n",
+        10_f64.to_radians()
+    );
+    fs::write(&scene, text).unwrap();
+    let out = folder.join(name);
+    let [scene, to] = [&scene, &out].map(|path| path.to_str().unwrap());
+    let output = run(&["run", scene, "--no-trace", "--out", to]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    summary(&out)["hand_torque"]["max_nm"].as_f64().unwrap()
+}
+
+/// In English, and in the panel's German.
+#[test]
+fn a_preset_of_spasticity_says_what_a_slow_stretch_meets() {
+    let home = tempfile::tempdir().unwrap();
+    let german = support::repository().join("host/panel/assets/strings/de.json");
+    let german: Value = serde_json::from_str(&fs::read_to_string(german).unwrap()).unwrap();
+    let words = [
+        (
+            "nothing when slow",
+            ["in a slow stretch", "a little when slow", "any speed"],
+        ),
+        (
+            "langsam nichts",
+            ["auch langsam", "langsam ab", "jedem Tempo"],
+        ),
+    ];
+    let is_spastic = |preset: &&Preset| preset.disorder == Some(Disorder::Spasticity);
+    let mut quiet = 0;
+    for preset in shipped().iter().filter(is_spastic) {
+        let name = &preset.name;
+        let slow_nm = slow_stretch_nm(preset, home.path());
+        let translated = german[format!("preset.{name}.feel")].as_str().unwrap();
+        let texts = [preset.feel.as_deref().unwrap(), translated];
+        for (text, (nothing, something)) in texts.into_iter().zip(words) {
+            let says_nothing = text.contains(nothing);
+            let says_something = something.iter().any(|part| text.contains(part));
+            assert_eq!(
+                says_something,
+                slow_nm >= 0.1,
+                "{name}, {slow_nm} N·m: {text}"
+            );
+            assert!(!(says_nothing && says_something), "{name}: {text}");
+            quiet += u32::from(says_nothing);
+        }
+    }
+    assert_eq!(quiet, 8);
 }
 
 #[test]
@@ -398,7 +482,7 @@ fn the_list_says_what_to_feel_for_and_how_sure_it_is() {
 Spasticity, MAS 2, as a stretch reflex makes it
   severity  MAS 2: more marked through most of the range, but the part is easily moved
   level     moderate
-  feel for  a fast stretch is answered with a push, a moment late; it pushes back when the hand stops
+  feel for  a push, a moment late, that pushes back at a stop; also in a slow stretch, from 75° on; earlier and stronger when fast
   evidence  estimate
   source    grades: Bohannon and Smith 1987; gain: McCrea et al. 2003, speed: Levin and Feldman 2003 (elbows); \
 delays: De Groote et al. 2018; threshold is an estimate

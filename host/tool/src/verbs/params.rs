@@ -71,7 +71,7 @@ enum Action {
         /// A preset, a scene that ships, or a file of either.
         #[arg(value_name = "NAME|FILE", value_hint = ValueHint::FilePath)]
         what: PathBuf,
-        /// Keep the effects that the preset does not have.
+        /// Keep the effects that the preset does not have; it replaces those that it has.
         #[arg(long)]
         add: bool,
     },
@@ -238,7 +238,8 @@ impl Done {
         print(&format!("revision {} is {}\n", self.revision, self.what))
     }
 
-    /// The same, with the effects that it has switched, and whether the angle has a zero.
+    /// The same, with the effects that it has switched or replaced, and whether the angle has
+    /// a zero.
     fn print_with_switched(
         &self,
         client: &mut Client<Line>,
@@ -247,6 +248,7 @@ impl Done {
     ) -> Result<(), Failure> {
         let values = self.values.as_ref().unwrap_or(before);
         let [on, off] = changes::switched(before, values);
+        let changed = changes::changed(before, values);
         let is_zeroed = client.status().map_err(failure)?.zeroed;
         if as_json {
             return print_json(&json!({
@@ -254,14 +256,19 @@ impl Done {
                 "done": self.what,
                 "on": on,
                 "off": off,
+                "changed": changed,
                 "zeroed": is_zeroed,
                 "warnings": self.values.as_ref().and_then(caps_warning_of).as_slice(),
             }));
         }
         self.print(false)?;
-        for (names, state) in [(on, "on"), (off, "off")] {
+        for (names, state) in [
+            (on, "now on"),
+            (off, "now off"),
+            (changed, "changed, on before"),
+        ] {
             if !names.is_empty() {
-                print(&format!("now {state}: {}\n", names.join(", ")))?;
+                print(&format!("{state}: {}\n", names.join(", ")))?;
             }
         }
         if !is_zeroed {

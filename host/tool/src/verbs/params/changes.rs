@@ -71,7 +71,6 @@ pub(super) fn reset(
 
 /// The effects that `values` switch on, and off.
 pub(super) fn switched(now: &Values, values: &Values) -> [Vec<&'static str>; 2] {
-    let is_switch = |p: &Parameter| matches!(p.kind, Kind::Choice(c) if c.key == RENDER);
     let changed = |to: f64| {
         let pairs = now.iter().zip(values.iter());
         pairs
@@ -80,6 +79,26 @@ pub(super) fn switched(now: &Values, values: &Values) -> [Vec<&'static str>; 2] 
             .collect()
     };
     [changed(1.0), changed(0.0)]
+}
+
+/// The effects that are on before and after, with other values.
+pub(super) fn changed(now: &Values, values: &Values) -> Vec<&'static str> {
+    let differs = |group: &str| {
+        let mut pairs = now.iter().zip(values.iter());
+        pairs.any(|((p, was), (_, is))| p.group == group && was.to_bits() != is.to_bits())
+    };
+    let is_on = |values: &Values, id: u8| values.get(id).is_some_and(|choice| choice != 0.0);
+    let stays_on = |p: &Parameter| is_switch(p) && is_on(now, p.id) && is_on(values, p.id);
+    let switches = PARAMETERS.iter().filter(|p| stays_on(p));
+    switches
+        .map(|p| p.group)
+        .filter(|group| differs(group))
+        .collect()
+}
+
+/// Whether it switches an effect.
+fn is_switch(parameter: &Parameter) -> bool {
+    matches!(parameter.kind, Kind::Choice(choice) if choice.key == RENDER)
 }
 
 /// A parameter that differs.
