@@ -194,6 +194,28 @@ mod tests {
         assert_eq!(ticks_until(0.0, 1.4, dead), Some(8));
     }
 
+    /// A commit takes effect between two windows.
+    #[test]
+    fn a_commit_hides_no_contradiction() {
+        let motor = motor();
+        let stands = Tick {
+            volts: motor.joint_constant,
+            current_a: 0.0,
+            count: 0,
+        };
+        for committed_at in 0..20 {
+            let mut check = EmfCheck::default();
+            let found = (0..20).find(|n| {
+                if *n == committed_at {
+                    check.restart();
+                }
+                check.contradicts(Some(stands), &motor, RAD_PER_COUNT, || false)
+            });
+            // One window at most begins anew.
+            assert!(found.is_some_and(|n| n <= 12), "{committed_at}: {found:?}");
+        }
+    }
+
     /// Values that are missing now and then hide nothing.
     #[test]
     fn a_wrong_sensor_contradicts_though_values_are_missing_now_and_then() {
