@@ -1,6 +1,7 @@
 //! Arming, lease and commit, model-checked: both controllers' own code through every
-//! run in which one frame fails in one of six ways, through restarts and disarms at
-//! instants of every phase, and through runs in which two frames fail.
+//! run in which one frame fails in one of six ways, through disarms at instants of every
+//! phase, restarts at those of arming, and through runs in which two frames fail. (Restarts under
+//! commits: `crepitus-device`, `idle`.)
 //!
 //! A run is a host that arms, commits, and disarms. Nothing in it is random, so a
 //! run is given by what fails: which frame, on which wire, is lost, comes late or
