@@ -3,6 +3,7 @@
 //! A pipe that nobody reads, or a terminal that was stopped by Ctrl-S, takes nothing more. A write would then wait
 //! for it, whatever signal comes; here a requested stop ends the wait.
 
+#[cfg(unix)]
 use crate::interrupt;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
