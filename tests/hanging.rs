@@ -72,6 +72,9 @@ fn a_recording_whose_last_samples_a_hanging_program_has_is_not_complete() {
     assert_eq!(status.code(), Some(1), "{text}");
     assert!(text.contains("nothing was heard for the last"), "{text}");
     assert!(text.contains("the recording is not complete"), "{text}");
+    // Which program it is, is said before.
+    let is_named = text.contains("does not respond") && text.contains(&hub.id().to_string());
+    assert!(is_named, "{text}");
     assert!(!recording(&path).is_complete());
 }
 

@@ -74,7 +74,7 @@ pub enum TransportError {
     },
     /// The process that serves the port to others does not respond.
     #[error(
-        "cannot open {port}: {} serves it to other programs and does not respond; continue that \
+        "{port}: {} serves it to other programs and does not respond; continue that \
          program (`fg`), or end it; torque ends without it after 250 ms",
         holder_text(.holder.as_ref())
     )]

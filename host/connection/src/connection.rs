@@ -91,6 +91,14 @@ impl Connection {
         }
     }
 
+    /// The program through which this one is connected to a port, if it does not respond. Asks it.
+    pub fn hanging(&mut self) -> Option<TransportError> {
+        match self {
+            Self::Shared(shared) => shared.hanging(),
+            Self::Alone(_) | Self::Simulated(_) => None,
+        }
+    }
+
     fn transport(&self) -> &dyn Transport {
         match self {
             Self::Shared(shared) => &**shared,

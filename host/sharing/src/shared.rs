@@ -102,6 +102,18 @@ impl Shared {
         Ok(programs)
     }
 
+    /// The program through which this one is connected, if it does not respond.
+    pub fn hanging(&mut self) -> Option<TransportError> {
+        let is_hub = self.hub.as_ref().is_some_and(|hub| !hub.is_over());
+        if is_hub || !self.programs().is_ok_and(|programs| programs.is_empty()) {
+            return None;
+        }
+        Some(TransportError::Hangs {
+            port: self.port.clone(),
+            holder: crepitus_client::holder_of(&self.port),
+        })
+    }
+
     /// Connects to the hub, or becomes it.
     fn attach(&mut self) -> Result<(), TransportError> {
         if let Some(heir) = self.link.take().and_then(Link::into_heir) {

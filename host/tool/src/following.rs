@@ -161,10 +161,15 @@ fn run(
                     }
                 }
                 Event::DriveRestarted => follower.tell("warning: the drive has restarted"),
-                Event::Silent(silence) => follower.tell(&format!(
-                    "warning: no samples for {} ms, but the connection is open",
-                    silence.as_millis()
-                )),
+                Event::Silent(silence) => follower.tell(&match client.transport_mut().hanging() {
+                    Some(why) => {
+                        format!("warning: no samples for {} ms: {why}", silence.as_millis())
+                    }
+                    None => format!(
+                        "warning: no samples for {} ms, but the connection is open",
+                        silence.as_millis()
+                    ),
+                }),
                 Event::Lost(error) => {
                     follower.tell(&format!(
                         "warning: {error}; reconnecting for up to {} s",
