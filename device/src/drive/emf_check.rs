@@ -211,7 +211,7 @@ mod tests {
                 }
                 check.contradicts(Some(stands), &motor, RAD_PER_COUNT, || false)
             });
-            // One window at most begins anew.
+            // At most one window is started again.
             assert!(found.is_some_and(|n| n <= 12), "{committed_at}: {found:?}");
         }
     }

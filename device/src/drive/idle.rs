@@ -9,7 +9,7 @@ use crepitus_protocol::pieces::Reassembly;
 
 /// Resources that `idle` shares. Every task may run before and after each lock.
 pub trait Plans {
-    /// What it shares with the link, too.
+    /// The resources that it shares with the link's task.
     fn parts(&mut self) -> &mut impl Shared;
 
     /// Stores both halves of a plan, for the tasks to apply.

@@ -140,7 +140,7 @@ mod tests {
         }
     }
 
-    /// What is warm stays warm over commits.
+    /// A commit does not reset the sum.
     #[test]
     fn a_commit_forgets_nothing() {
         let plan = |continuous_a| OverloadPlan::new(continuous_a, TICK_S);

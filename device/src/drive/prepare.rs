@@ -165,7 +165,7 @@ pub struct RenderingPlan {
 pub struct CommandPlan {
     /// Revision of the parameters, for the blocks.
     pub revision: Revision,
-    /// The boot of comms that has sent it: another counts revisions anew.
+    /// Boot counter of the comms that has sent it: each boot counts revisions from the saved one.
     pub comms_start: u16,
     /// The motor, if it has changed.
     pub motor: Option<MotorPlan>,

@@ -77,10 +77,14 @@ impl Recorded {
         Ok(Some(totals))
     }
 
-    /// Leaves the file without an end: more was produced than is in it.
-    pub(crate) fn leave(mut self) -> Result<Totals, Failure> {
+    /// Leaves the file without an end: more was produced than is in it. Without a sample there is
+    /// no file either.
+    pub(crate) fn leave(mut self) -> Result<Option<Totals>, Failure> {
+        if self.recorder.totals().received == 0 {
+            return self.discard().map(|()| None);
+        }
         self.recorder.flush().map_err(stopped)?;
-        Ok(self.recorder.totals())
+        Ok(Some(self.recorder.totals()))
     }
 }
 

@@ -26,7 +26,7 @@ use std::vec::Vec;
 /// The longest that the drive may take for a commit, ticks: four blocks, and pieces that are sent again.
 const PATIENCE_TICKS: u32 = 20_000;
 
-/// What comms has, or sends: this start, and this commit.
+/// A commit, and the boot of comms that sends it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Commit {
     start: u16,
@@ -68,7 +68,7 @@ impl Commit {
     }
 }
 
-/// What happens to comms, or to what it has sent.
+/// An event at comms or on the link.
 #[derive(Clone, Copy, Debug)]
 enum Event {
     /// Another commit.
@@ -104,12 +104,12 @@ struct Bench {
     sent: Vec<Commit>,
     /// The drive has said that it is in force, or refused.
     is_known: bool,
-    /// What is to be sent yet, and the number of the next heartbeat.
+    /// Messages to send, and the number of the next heartbeat.
     queue: VecDeque<ToDrive>,
     beat: u8,
     from_drive: Decoder,
     seen_tick: u64,
-    /// What happens, and in which tick.
+    /// Events, each with its tick.
     events: VecDeque<(u32, Event)>,
     ticks: u32,
     /// For how many ticks `idle` is interrupted at each lock.

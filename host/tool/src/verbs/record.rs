@@ -92,8 +92,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let unheard = client.unheard();
     client.end_telemetry();
     if let (Ok(_), Some(unheard)) = (&end, unheard) {
-        let totals = recorded.leave()?;
-        return Err(kept(silent(unheard), file, &totals));
+        let failure = silent(unheard);
+        return Err(match recorded.leave()? {
+            Some(totals) => kept(failure, file, &totals),
+            None => failure,
+        });
     }
     // Finishes the file also after an error.
     let totals = recorded.finish()?;
