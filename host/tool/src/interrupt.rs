@@ -7,6 +7,9 @@ use std::sync::{Arc, OnceLock};
 
 static REQUESTED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
+/// A request was obeyed and forgotten.
+static WAS_OBEYED: AtomicBool = AtomicBool::new(false);
+
 /// Installs the handlers, which set a flag.
 ///
 /// A signal that comes while its handler is being installed would reach neither the handler nor
@@ -51,8 +54,14 @@ fn held_back(work: impl FnOnce()) {
 /// Forgets a request that was obeyed; the next one counts.
 pub(crate) fn forget() {
     if let Some(requested) = REQUESTED.get() {
-        requested.store(false, Ordering::Relaxed);
+        let was_requested = requested.swap(false, Ordering::Relaxed);
+        WAS_OBEYED.fetch_or(was_requested, Ordering::Relaxed);
     }
+}
+
+/// Whether a stop was ever requested, also one that was obeyed since.
+pub(crate) fn ever_requested() -> bool {
+    requested() || WAS_OBEYED.load(Ordering::Relaxed)
 }
 
 /// Requests a stop, as the signal does: for a Ctrl-C that arrived as a key.

@@ -62,7 +62,7 @@ fn takes_more(out: &impl std::os::fd::AsRawFd) -> bool {
     /// Between two looks at the request, ms.
     const LOOK_EVERY: i32 = 20;
     while !is_ready(out, LOOK_EVERY) {
-        if interrupt::requested() {
+        if interrupt::ever_requested() {
             return false;
         }
     }

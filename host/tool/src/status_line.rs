@@ -4,6 +4,7 @@ use crate::output::stderr_is_ready;
 use crepitus_client::Accounting;
 use crepitus_protocol::telemetry::Block;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{self, IsTerminal};
 
 /// The line; hidden if stderr is not a terminal.
 pub(crate) struct StatusLine {
@@ -20,14 +21,18 @@ impl StatusLine {
         Self { bar, last: None }
     }
 
+    /// Of a program whose lines go to stdout: on a terminal they show that samples arrive.
+    pub(crate) fn beside_lines() -> Self {
+        let line = Self::new();
+        if io::stdout().is_terminal() {
+            line.bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        line
+    }
+
     /// Takes the latest block.
     pub(crate) fn block(&mut self, block: &Block) {
         self.last = Some(*block);
-    }
-
-    /// Hides the line while `work` uses the terminal.
-    pub(crate) fn aside<R>(&self, work: impl FnOnce() -> R) -> R {
-        self.bar.suspend(work)
     }
 
     /// Updates the line.

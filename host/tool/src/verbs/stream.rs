@@ -87,7 +87,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         every: u64::from(TICKS_PER_S / rate),
         format,
         text: String::new(),
-        status: StatusLine::new(),
+        status: StatusLine::beside_lines(),
     };
     if format == SampleFormat::Csv {
         let header: Vec<_> = COLUMNS.iter().map(|(name, _)| *name).collect();
@@ -136,7 +136,7 @@ impl Follower for Printing {
     }
 
     fn pause(&mut self, client: &mut Client<Line>) -> Result<bool, Failure> {
-        self.status.aside(|| print(&self.text))?;
+        print(&self.text)?;
         self.text.clear();
         self.status.show(client.accounting());
         Ok(false)
