@@ -19,7 +19,6 @@ use crepitus_protocol::pieces::{self, Piece};
 use crepitus_protocol::{Decoder, Lane, Revision, TICK_US, Values};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use std::boxed::Box;
 use std::collections::VecDeque;
 use std::vec::Vec;
 
@@ -88,15 +87,15 @@ fn event() -> impl Strategy<Value = Event> {
 }
 
 /// The drive's tasks, and comms at the other end of the link.
-struct Bench {
+struct Bench<'a> {
     rendering: Rendering,
     command: Command,
     link: LinkTask<FrameBuffer>,
     commits: Commits,
     plan: Option<Prepared>,
     // Shared without a lock, also with `idle`.
-    exchange: &'static Exchange,
-    counters: &'static Counters,
+    exchange: &'a Exchange,
+    counters: &'a Counters,
     /// The torque limit of what was in force, one after the other, N·m.
     in_force: Vec<f32>,
     /// The latest commit of comms, and all before.
@@ -117,8 +116,13 @@ struct Bench {
     locks: usize,
 }
 
-impl Bench {
-    fn new(start: &Start, events: Vec<(u32, Event)>, interrupted: Vec<u32>) -> Self {
+impl<'a> Bench<'a> {
+    fn new(
+        start: &Start,
+        (exchange, counters): (&'a Exchange, &'a Counters),
+        events: Vec<(u32, Event)>,
+        interrupted: Vec<u32>,
+    ) -> Self {
         let boot = Boot::default();
         let saved = Commit {
             start: 1,
@@ -131,8 +135,8 @@ impl Bench {
             link: LinkTask::new(boot.identity, boot.start),
             commits: Commits::default(),
             plan: None,
-            exchange: Box::leak(Box::new(Exchange::new(0))),
-            counters: Box::leak(Box::new(Counters::new())),
+            exchange,
+            counters,
             in_force: Vec::new(),
             latest: saved,
             sent: std::vec![saved],
@@ -293,7 +297,7 @@ impl Bench {
     }
 }
 
-impl Shared for Bench {
+impl Shared for Bench<'_> {
     fn command<R>(&mut self, work: impl FnOnce(&mut Command) -> R) -> R {
         self.interrupts();
         work(&mut self.command)
@@ -305,7 +309,7 @@ impl Shared for Bench {
     }
 }
 
-impl Plans for Bench {
+impl Plans for Bench<'_> {
     fn parts(&mut self) -> &mut impl Shared {
         self
     }
@@ -318,7 +322,7 @@ impl Plans for Bench {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        failure_persistence: None, rng_seed: RngSeed::Fixed(1), cases: 400, ..ProptestConfig::default()
+        failure_persistence: None, rng_seed: RngSeed::Fixed(1), cases: if cfg!(miri) { 2 } else { 400 }, ..ProptestConfig::default()
     })]
 
     /// Whatever is said to be in force is, and the last commit comes to be, or is refused.
@@ -330,8 +334,8 @@ proptest! {
         let mut events = events;
         events.sort_by_key(|(tick, _)| *tick);
         let (mut preparation, start) = Preparation::new().unwrap();
-        let mut bench = Bench::new(&start, events, interrupted);
-        let (exchange, counters) = (bench.exchange, bench.counters);
+        let (exchange, counters) = (&Exchange::new(0), &Counters::new());
+        let mut bench = Bench::new(&start, (exchange, counters), events, interrupted);
         let mut gathered = Reassembly::default();
         let mut last_event = 0;
         while !bench.events.is_empty() || !bench.is_known {
