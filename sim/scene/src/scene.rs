@@ -164,6 +164,7 @@ impl Scene {
             ));
         }
         check_released(&root, motion.kind, &effects.listed)?;
+        stages::check_each(&root, &effects.listed)?;
         if is_device {
             device::check(&root, &effects, solver)?;
         }

@@ -322,7 +322,7 @@ impl Plans for Bench<'_> {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        failure_persistence: None, rng_seed: RngSeed::Fixed(1), cases: if cfg!(miri) { 2 } else { 400 }, ..ProptestConfig::default()
+        failure_persistence: None, rng_seed: RngSeed::Fixed(1), cases: 400, ..ProptestConfig::default()
     })]
 
     /// Whatever is said to be in force is, and the last commit comes to be, or is refused.

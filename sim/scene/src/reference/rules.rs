@@ -31,7 +31,7 @@ impl Reference<'_> {
     }
 
     /// Ts = Tk, as far as numbers tell.
-    pub(super) fn touches(&self) -> bool {
+    pub(crate) fn touches(&self) -> bool {
         let p = &self.settings.parameters;
         p.static_torque_nm - p.kinetic_torque_nm <= ROUNDINGS * f64::EPSILON * p.static_torque_nm
     }

@@ -210,7 +210,7 @@ impl<S: 'static> Maker<'_, S> {
         S: Sensor<F>,
     {
         let mut accounting =
-            StepAccounting::new::<F>(*self.settings, self.step_s, self.shaft.omega_rad_s);
+            StepAccounting::new::<F>(&self.settings, self.step_s, self.shaft.omega_rad_s);
         let torque_nm = stages.joint().torque_nm();
         accounting.tally.shown(torque_nm.to_f64());
         let start = (&self.shaft, &self.sensor);

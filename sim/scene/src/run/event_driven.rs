@@ -32,10 +32,10 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
     let first = scene.motion.at(0.0);
     let mut fastest_rad_s = first.omega_rad_s.abs();
     let mut joint = scene.crepitus.map(|crepitus| {
-        (
-            Reference::new(&crepitus.settings, &scene.motion),
-            EventAccounting::new(*crepitus.settings, &scene.motion, &first),
-        )
+        let reference = Reference::new(&crepitus.settings, &scene.motion);
+        let touches = reference.touches();
+        let accounting = EventAccounting::new(*crepitus.settings, &scene.motion, &first, touches);
+        (reference, accounting)
     });
     let mut symptoms = ListedSymptoms::new(&scene.listed, &scene.motion)
         .map_err(|_| SettingsError::Contradiction { reason: UNSOLVED })?;
@@ -143,13 +143,13 @@ struct EventAccounting<'a> {
 }
 
 impl<'a> EventAccounting<'a> {
-    fn new(settings: Settings, motion: &'a Motion, first: &ShaftState) -> Self {
+    fn new(settings: Settings, motion: &'a Motion, first: &ShaftState, touches: bool) -> Self {
         let look_s = TAU / settings.parameters.natural_rad_s() / LOOKS_PER_SWING;
         let lead = Lead::new(&settings, look_s, false);
         Self {
             looked_s: 0.0,
             look_s,
-            tally: Tally::new(settings, first.omega_rad_s, lead),
+            tally: Tally::new(settings, first.omega_rad_s, lead, touches),
             motion,
             phi_start_rad: first.phi_rad,
             accounted: (0.0, first.phi_rad, stick_end(0.0, first)),

@@ -9,8 +9,11 @@ use crate::any_joint::{AnyJoint, Precise};
 use crate::scene::Scene;
 use crate::trace::EventRecord;
 use crate::walk::Walk;
+use crepitus_model::joint::StepCoefficients;
 use crepitus_model::solver::Solver;
-use crepitus_model::{EVENTS_PER_STEP, Event, Phase, Real, Settings, ShaftStep, StickSlip};
+use crepitus_model::{
+    EVENTS_PER_STEP, Event, Phase, Real, Settings, ShaftStep, StickSlip, Validated,
+};
 
 /// How many steps go by between two reports of progress.
 pub(super) const PROGRESS_STEPS: u64 = 1 << 16;
@@ -46,7 +49,7 @@ fn with_sensor<F: Precise, S: Sensor<F>>(
     };
     let omega = F::from_f64(scene.start().omega_rad_s);
     let joint = AnyJoint::new(&crepitus.settings, solver, step_s, omega)?;
-    step_joint(scene, watch, *crepitus.settings, sensor, joint)
+    step_joint(scene, watch, &crepitus.settings, sensor, joint)
 }
 
 /// A scene without a joint: the motion, and perhaps its sensor.
@@ -91,7 +94,7 @@ fn bare<F: Real, S: Sensor<F>>(
 fn step_joint<F: Real, S: Sensor<F>>(
     scene: &Scene,
     watch: &mut dyn Watch,
-    settings: Settings,
+    settings: &Validated<Settings>,
     mut sensor: S,
     mut joint: AnyJoint<F>,
 ) -> Result<Totals, Ended> {
@@ -182,10 +185,15 @@ pub(super) struct StepAccounting {
 
 impl StepAccounting {
     /// Of a joint in precision `F`.
-    pub(super) fn new<F: Real>(settings: Settings, step_s: f64, omega_rad_s: f64) -> Self {
-        let lead = Lead::new(&settings, step_s, F::IS_SINGLE);
+    pub(super) fn new<F: Real>(
+        settings: &Validated<Settings>,
+        step_s: f64,
+        omega_rad_s: f64,
+    ) -> Self {
+        let lead = Lead::new(settings, step_s, F::IS_SINGLE);
+        let touches = StepCoefficients::<F>::new(settings, step_s).is_ok_and(|c| c.touches());
         Self {
-            tally: Tally::new(settings, omega_rad_s, lead),
+            tally: Tally::new(**settings, omega_rad_s, lead, touches),
             step_s,
             phi_rad: 0.0,
             booked: 0.0,

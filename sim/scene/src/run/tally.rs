@@ -10,8 +10,8 @@
 //! `work_in` is ∫T·dφ of the torque shown. `convention` is the energy that the
 //! object gains without a torque being shown for it: under `frozen` and
 //! `paper` the inertia and damping that the stick torque leaves out, under
-//! `frozen` also the reset at the end of a slip; behind a device also what it does while it
-//! refuses samples. `residual` is what numerical error leaves.
+//! `frozen` also the reset at the end of a slip, and with Ts = Tk where it goes on instead; behind
+//! a device also what it does while it refuses samples. `residual` is what numerical error leaves.
 
 use super::energy::Energy;
 use super::lead::Lead;
@@ -58,6 +58,9 @@ pub(super) struct Tally {
     pub(super) torque: TorqueTally,
     pub(super) energy: Energy,
     pub(super) lead: Lead,
+    /// Ts = Tk under `frozen`: a slip goes on where it would end, with the shaft's velocity of then
+    /// and without an event.
+    goes_on: bool,
 }
 
 /// The object at some time, on a shaft at the angle `phi_rad`.
@@ -101,8 +104,8 @@ impl Gap {
 
 impl Tally {
     /// A run that begins in stick at θ = 0 with the shaft at `omega_rad_s`;
-    /// angles of the shaft count from here.
-    pub(super) fn new(settings: Settings, omega_rad_s: f64, lead: Lead) -> Self {
+    /// angles of the shaft count from here. `touches`: the solver takes Ts and Tk for equal.
+    pub(super) fn new(settings: Settings, omega_rad_s: f64, lead: Lead, touches: bool) -> Self {
         Self {
             oscillator: Oscillator::of(&settings.parameters),
             start: ObjectState {
@@ -122,6 +125,7 @@ impl Tally {
             },
             energy: Energy::new(&settings.parameters, omega_rad_s),
             lead,
+            goes_on: touches && settings.convention == Convention::Frozen,
             settings,
         }
     }
@@ -210,6 +214,8 @@ impl Tally {
         self.shown(event.torque_after_nm);
         let frozen = self.settings.convention == Convention::Frozen;
         let (theta, theta_dot) = match self.start.phase {
+            // Each that went on lasted a period, and ended as it began.
+            Phase::Slip(_) if self.goes_on => (self.start.theta_rad, self.start.theta_dot_rad_s),
             // A frozen slip ends with a reset: the object's own state is the
             // closed form.
             Phase::Slip(sense) if frozen => self.swing(sense, time_s - self.start.time_s),
@@ -308,8 +314,17 @@ impl Tally {
                 self.shown(torque);
                 self.energy.work_in_j += torque * delta_phi;
                 self.energy.friction_j += torque * (delta_phi - (theta - s.theta_rad));
+                let centre = torque / p.stiffness_nm_per_rad;
+                if self.goes_on {
+                    // A slip alone keeps the energy of its swing.
+                    self.energy.reset(
+                        s.theta_rad - centre,
+                        s.theta_dot_rad_s,
+                        theta - centre,
+                        theta_dot,
+                    );
+                }
                 if p.damping_nms_per_rad > 0.0 {
-                    let centre = torque / p.stiffness_nm_per_rad;
                     self.energy.viscous_j += super::energy::viscous_loss(
                         &p,
                         &self.oscillator,

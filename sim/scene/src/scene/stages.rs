@@ -1,5 +1,7 @@
 //! The stages of a device that a scene lists, built from its numbers.
 
+use crate::document::Section;
+use crate::error::SceneError;
 use crate::scene::Scene;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::parameters::Chosen;
@@ -69,4 +71,15 @@ impl Scene {
         self.laws::<f64>(self.step_s(), MOST_DELAY_TICKS)?;
         Ok(())
     }
+}
+
+/// Rejects numbers that contradict each other in an effect of a device, where they stand.
+pub(super) fn check_each(root: &Section<'_>, listed: &[Listed]) -> Result<(), SceneError> {
+    for one in listed {
+        if let Err(error) = effect_settings(std::slice::from_ref(one)).check_knee(None) {
+            let own = root.section("effects")?.section(one.effect.name)?;
+            return Err(own.error(error.to_string()));
+        }
+    }
+    Ok(())
 }
