@@ -266,8 +266,7 @@ mod tests {
                 ..status
             };
             view.receive_status(&other);
-            // The blocks of before are over, as those of another boot are here.
-            assert_eq!(view.state(), State::Disarmed);
+            assert_eq!(view.status(), Some(&status), "not of this boot");
             let first = block(tick, 0, 33);
             assert_eq!(view.receive_block(&first, 3), Continuity::Restarted);
             assert!(view.is_present(3) && view.status().is_none());
