@@ -527,7 +527,7 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "comms-overcurrent",
         cause: "the drive does not react to too much current",
         detector: Detector::Comms,
-        detection: "more than 1.95 A in 4 consecutive samples while the drive is armed",
+        detection: "more than 1.95 A in 4 samples while the drive is armed; one with less makes up for one",
         reaction: LINE_OFF,
         within_ticks: Some(100),
         clear: REPAIR,
@@ -537,9 +537,10 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "torque-beyond-bounds",
         cause: "the drive computes wrongly",
         detector: Detector::Comms,
-        detection: "in 4 consecutive samples the torque is above limits.torque_nm, or the model's above its static \
-                    torque, as committed; or 24 samples with torque of a drive that says it is not armed, \
-                    while the line of comms is on",
+        detection: "in 4 samples the torque is above limits.torque_nm, or beside the model's by more than what is \
+                    added to it and what the joint may hold back, or the model's above its static torque, as \
+                    committed; one within the bounds makes up for one. Or 24 samples with torque of a drive that \
+                    says it is not armed, while the line of comms is on",
         reaction: LINE_OFF,
         within_ticks: Some(100),
         clear: REPAIR,
@@ -549,8 +550,9 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "current-beside-torque",
         cause: "the drive's current loop does not follow, and it does not react",
         detector: Detector::Comms,
-        detection: "in 120 consecutive samples that are not limited the current is more than 0.25 A from that of the torque, or \
-                    missing though there is torque",
+        detection: "in 120 samples the current is 0.375 A or more from that of the torque, or missing though there \
+                    is torque; less than that counts in part down to 0.25 A, and one below makes up for one; not at \
+                    a speed that needs all voltage",
         reaction: LINE_OFF,
         within_ticks: Some(220),
         clear: REPAIR,
@@ -560,8 +562,8 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "comms-overspeed",
         cause: "the drive does not react to too much speed",
         detector: Detector::Comms,
-        detection: "in 3 sound blocks in a row the counts are above 1.15 times the speed at which the drive lets go, with \
-                    the supply as it is set; blocks may be missing between",
+        detection: "in 3 blocks the counts are above 1.15 times the speed at which the drive lets go, with the \
+                    supply as it is set; a slower one makes up for one, and blocks may be missing between",
         reaction: LINE_OFF,
         within_ticks: Some(160),
         clear: CLEAR,
@@ -571,7 +573,9 @@ pub const FAULTS: [FaultSpec; 48] = [
         name: "torque-outside-range",
         cause: "the drive does not follow its range of motion",
         detector: Detector::Comms,
-        detection: "4 consecutive samples with torque, outside the range of motion or without a zero of the angle",
+        detection: "4 samples with torque outside the range of motion or without a zero of the angle, of which one \
+                    inside makes up for one; or 40 without a plausible count, of which eight with one make up for \
+                    one",
         reaction: LINE_OFF,
         within_ticks: Some(100),
         clear: REPAIR,

@@ -31,6 +31,8 @@ pub struct DriveView {
     last_block_ms: Option<u64>,
     /// The lowest bits of the drive's boot counter.
     start: Option<u8>,
+    /// A status has shown that these are those of another boot by chance.
+    is_other_boot: bool,
     /// The tick after its last block.
     next_tick: u64,
     /// Samples that the drive itself had dropped up to its last block.
@@ -48,7 +50,7 @@ impl DriveView {
                 self.identity = None;
                 Continuity::Next { lost: 0 }
             }
-            Some(known) if known != start => {
+            Some(known) if known != start || self.is_other_boot => {
                 // The drive has restarted: everything received before is stale.
                 *self = Self::default();
                 Continuity::Restarted
@@ -72,10 +74,17 @@ impl DriveView {
 
     /// Receives a status. A status from another boot than the blocks is ignored:
     /// the next block will report the restart.
+    ///
+    /// After power was off the boot counter is random, so in one case of 32 its lowest bits are
+    /// those of before, and blocks look stale. Statuses have all of it.
     pub fn receive_status(&mut self, status: &DriveStatus) {
         let [low, _] = status.start.to_le_bytes();
+        if self.start != Some(low & 31) {
+            return;
+        }
+        self.is_other_boot = (self.status).is_some_and(|old| status.start != old.start);
         let is_newer = self.status.is_none_or(|old| status.tick >= old.tick);
-        if self.start == Some(low & 31) && is_newer {
+        if is_newer && !self.is_other_boot {
             self.status = Some(*status);
         }
     }
@@ -237,5 +246,35 @@ mod tests {
             (20, None),
             "of another life"
         );
+    }
+
+    /// A boot counter that is random may have the same lowest bits.
+    #[test]
+    fn another_boot_with_the_same_lowest_bits_is_a_restart() {
+        for tick in [40, 90_000] {
+            let mut view = DriveView::default();
+            view.receive_block(&block(5_000, 0, 1), 1);
+            let status = DriveStatus {
+                tick: 5_030,
+                start: 1,
+                ..DriveStatus::default()
+            };
+            view.receive_status(&status);
+            let other = DriveStatus {
+                tick,
+                start: 33,
+                ..status
+            };
+            view.receive_status(&other);
+            assert_eq!(view.status(), Some(&status), "not of this boot");
+            let first = block(tick, 0, 33);
+            assert_eq!(view.receive_block(&first, 3), Continuity::Restarted);
+            assert!(view.is_present(3) && view.status().is_none());
+            view.receive_status(&other);
+            assert_eq!(view.status(), Some(&other));
+            let next = block(tick + 20, 0, 33);
+            let continuity = view.receive_block(&next, 4);
+            assert_eq!(continuity, Continuity::Next { lost: 0 });
+        }
     }
 }

@@ -18,6 +18,8 @@ pub struct Parameters {
     bounds: Bounds,
     /// Bounds of all values that may still be in force.
     wide_bounds: Bounds,
+    /// Blocks in a row with the committed values in force, and no ramp.
+    settled_blocks: u32,
 }
 
 impl Parameters {
@@ -37,6 +39,7 @@ impl Parameters {
             saved: saved.map(|(revision, _)| revision),
             bounds,
             wide_bounds: bounds,
+            settled_blocks: 0,
         }
     }
 
@@ -73,6 +76,7 @@ impl Parameters {
         self.latest = self.latest.next();
         self.pending = Some((self.latest, *values));
         self.wide_bounds = self.wide_bounds.or(Bounds::of(&settings));
+        self.settled_blocks = 0;
         Ok(self.latest)
     }
 
@@ -100,11 +104,17 @@ impl Parameters {
         self.revision = self.latest;
     }
 
-    /// Narrows the bounds once a block shows that the committed values are in
-    /// force, with no ramp in progress.
+    /// Narrows the bounds once blocks show that the committed values are in
+    /// force, with no ramp in progress and nothing left that fades.
     pub fn shown(&mut self, block: &Block) {
         let is_settling = (block.samples.iter()).any(|s| s.flags.has(SampleFlags::SETTLING));
-        if block.revision == self.revision && self.pending.is_none() && !is_settling {
+        let is_in_force = block.revision == self.revision && self.pending.is_none();
+        self.settled_blocks = if is_in_force && !is_settling {
+            self.settled_blocks.saturating_add(1)
+        } else {
+            0
+        };
+        if self.settled_blocks > 0 && self.wide_bounds.has_faded(self.settled_blocks) {
             self.wide_bounds = self.bounds;
         }
     }
@@ -128,7 +138,8 @@ impl Parameters {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_protocol::parameters::id;
+    use crepitus_protocol::parameters::{find, id};
+    use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Sample};
 
     #[test]
     fn a_commit_counts_once_it_is_confirmed() {
@@ -149,6 +160,39 @@ mod tests {
             (parameters.revision(), *parameters.values()),
             (Revision(3), values)
         );
+    }
+
+    /// Compensation of friction that is switched off fades from 0.4 N·m, 5 mN·m in a tick.
+    #[test]
+    fn bounds_are_narrowed_when_all_that_fades_has_faded() {
+        let block = |revision, flags| Block {
+            revision,
+            samples: [Sample {
+                flags: SampleFlags(flags),
+                ..Sample::default()
+            }; BLOCK_SAMPLES],
+            ..Block::default()
+        };
+        let mut values = Values::default();
+        let (compensation, _) = find("friction-compensation.render").unwrap();
+        values.set(compensation, 1.0);
+        let mut parameters = Parameters::new(Some((Revision(1), values)));
+        let with = parameters.bounds_in_force();
+        let revision = parameters.propose(&Values::default(), true).unwrap();
+        parameters.accept();
+        let without = Bounds::of(&DeviceSettings::of(&Values::default()).unwrap());
+        let both = with.or(without);
+        for _ in 0..20 {
+            parameters.shown(&block(Revision(1), 0));
+            parameters.shown(&block(revision, SampleFlags::SETTLING));
+        }
+        for _ in 0..4 {
+            assert_eq!(parameters.bounds_in_force(), both);
+            parameters.shown(&block(revision, 0));
+        }
+        assert_eq!(parameters.bounds_in_force(), both);
+        parameters.shown(&block(revision, 0));
+        assert_eq!(parameters.bounds_in_force(), without);
     }
 
     #[test]

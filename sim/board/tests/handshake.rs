@@ -1,7 +1,8 @@
 //! Arming, lease and commit, model-checked: both controllers' own code through every
 //! run in which one frame fails in one of six ways, through disarms at instants of every
-//! phase, restarts at those of arming, and through runs in which two frames fail. (Restarts under
-//! commits: `crepitus-device`, `idle`.)
+//! phase, restarts at those of arming and of a commit, the latter also with a frame that fails,
+//! and through runs in which two frames fail. (Every order of tasks in a commit:
+//! `crepitus-device`, `idle`.)
 //!
 //! A run is a host that arms, commits, and disarms. Nothing in it is random, so a
 //! run is given by what fails: which frame, on which wire, is lost, comes late or
@@ -16,10 +17,10 @@ mod support;
 use crepitus_board::board::Controller;
 use crepitus_board::faults::Fate;
 use crepitus_board::{Board, Start};
-use crepitus_protocol::State;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::host::{Answer, Operation, Refusal};
 use crepitus_protocol::management::ResetCause;
+use crepitus_protocol::{Revision, State, Values};
 use support::oracle::Oracle;
 use support::{Host, examination, set};
 
@@ -39,6 +40,12 @@ const START_UP_TICKS: [u64; 2] = [2, 240];
 /// Ticks between two instants at which a controller restarts: no multiple of a
 /// millisecond's 20.
 const RESTART_EVERY: usize = 7;
+
+/// The same where a frame fails, too.
+const RESTART_WITH_FAILURE_EVERY: usize = 67;
+
+/// Ticks after a commit's answer in which a controller still restarts.
+const AFTER_COMMIT_TICKS: u64 = 60;
 
 /// One of the two wires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,14 +98,27 @@ impl Run {
         }
     }
 
-    fn with(failures: &[Failure]) -> Self {
+    /// An armed one, about to commit.
+    fn armed() -> Self {
         let mut run = Self::new();
+        assert_eq!(run.host.ask(Operation::Arm), Ok(Answer::Done));
+        let board = run.host.device.board_mut();
+        run.before = [Way::Down, Way::Up].map(|way| injector(board, way).passed());
+        run.begun = board.now();
+        run
+    }
+
+    fn with(failures: &[Failure]) -> Self {
+        Self::new().fails(failures)
+    }
+
+    fn fails(mut self, failures: &[Failure]) -> Self {
         for &(way, number, fate) in failures {
-            let number = run.before[way as usize] + number;
-            let board = run.host.device.board_mut();
+            let number = self.before[way as usize] + number;
+            let board = self.host.device.board_mut();
             injector(board, way).fates.insert(number, fate);
         }
-        run
+        self
     }
 
     fn board(&self) -> &Board {
@@ -148,10 +168,16 @@ impl Run {
         }
     }
 
-    fn commit(&mut self) -> Option<Result<Answer, Refusal>> {
+    /// What is committed, and from which revision.
+    fn proposal(&self) -> (Revision, Values) {
         let comms = self.board().comms();
         let (base, mut values) = (comms.revision(), *comms.values());
         set(&mut values, "crepitus.static_torque_nm", 0.5);
+        (base, values)
+    }
+
+    fn commit(&mut self) -> Option<Result<Answer, Refusal>> {
+        let (base, values) = self.proposal();
         let oracle = self.host.oracle.as_mut().expect("an oracle");
         oracle.propose(&values);
         let commits = self.host.drive_count(DriveCounter::Commits);
@@ -199,6 +225,18 @@ fn frames() -> ([u64; 2], u64) {
     let told = run.play();
     assert_eq!(told.arming, Some(Ok(Answer::Done)));
     assert!(matches!(told.commit, Some(Ok(_))), "{told:?}");
+    frames_since(run)
+}
+
+/// The same of a commit.
+fn frames_of_commit() -> ([u64; 2], u64) {
+    let mut run = Run::armed();
+    let commit = run.commit();
+    assert!(matches!(commit, Some(Ok(_))), "{commit:?}");
+    frames_since(run)
+}
+
+fn frames_since(mut run: Run) -> ([u64; 2], u64) {
     let board = run.host.device.board_mut();
     let after = [Way::Down, Way::Up].map(|way| injector(board, way).passed());
     let ticks = board.now() - run.begun;
@@ -207,7 +245,10 @@ fn frames() -> ([u64; 2], u64) {
 
 /// Every fault of a frame of a run.
 fn failures() -> Vec<Failure> {
-    let (frames, _) = frames();
+    failures_of(frames().0)
+}
+
+fn failures_of(frames: [u64; 2]) -> Vec<Failure> {
     let mut all = Vec::new();
     for (way, frames) in [Way::Down, Way::Up].into_iter().zip(frames) {
         for number in 0..frames {
@@ -336,4 +377,107 @@ fn restart(controller: Controller, at: u64, start_up_ticks: u64, case: &str) -> 
     run.host.renew_every = Some(1_000);
     run.recover();
     was_armed
+}
+
+/// A controller that restarts in a commit or soon after ends the torque, and both have the same
+/// whole set of values again.
+#[test]
+fn either_controller_may_restart_at_any_time_of_a_commit() {
+    let (_, ticks) = frames_of_commit();
+    let (mut played, mut committed) = (0, 0);
+    for controller in [Controller::Drive, Controller::Comms] {
+        for start_up_ticks in START_UP_TICKS {
+            for at in (0..ticks + AFTER_COMMIT_TICKS).step_by(RESTART_EVERY) {
+                let case = format!("{controller:?} restarts {at} ticks after the commit");
+                let run = Run::armed();
+                committed += u32::from(restart_in_commit(
+                    run,
+                    controller,
+                    (at, start_up_ticks),
+                    &case,
+                ));
+                played += 1;
+            }
+        }
+    }
+    println!("{played} runs of {ticks} ticks, {committed} of them committed");
+    assert!(played > 50 && committed > 10 && committed < played);
+}
+
+/// The same where a frame of the commit is lost, comes late or comes again, too.
+#[test]
+fn either_controller_may_restart_in_a_commit_of_which_a_frame_fails() {
+    let (frames, ticks) = frames_of_commit();
+    let (mut played, mut committed) = (0, 0);
+    for (n, failure) in failures_of(frames).into_iter().enumerate() {
+        // Other instants for each, so that all are met by some.
+        let first = 5 * n % RESTART_WITH_FAILURE_EVERY;
+        let instants = (0..ticks + AFTER_COMMIT_TICKS).skip(first);
+        for at in instants.step_by(RESTART_WITH_FAILURE_EVERY) {
+            for controller in [Controller::Drive, Controller::Comms] {
+                let case = format!("{controller:?} restarts {at} ticks after it, {failure:?}");
+                let run = Run::armed().fails(&[failure]);
+                let times = (at, START_UP_TICKS[0]);
+                committed += u32::from(restart_in_commit(run, controller, times, &case));
+                played += 1;
+            }
+        }
+    }
+    println!("{played} runs of {ticks} ticks, {committed} of them committed");
+    assert!(played > 200 && committed > 10 && committed < played);
+}
+
+/// Whether the host was told that the commit is in force.
+fn restart_in_commit(
+    mut run: Run,
+    controller: Controller,
+    (at, start_up_ticks): (u64, u64),
+    case: &str,
+) -> bool {
+    let (base, proposed) = run.proposal();
+    let kept = *run.board().comms().values();
+    let host = &mut run.host;
+    // It knows only a device that does not restart.
+    host.oracle = None;
+    let request = host.request(Operation::Commit {
+        base,
+        values: proposed,
+    });
+    host.say(&request);
+    let mut answer = None;
+    for tick in 0..at + 2_000 {
+        if tick == at {
+            let board = host.device.board_mut();
+            board.reset_for(controller, ResetCause::Requested, start_up_ticks);
+        }
+        host.tick();
+        let board = host.device.board();
+        assert!(tick < at || !board.is_driven(), "{case}: torque after it");
+        let in_force = board.drive().values();
+        let is_whole = in_force.is_none_or(|values| [kept, proposed].contains(values));
+        assert!(is_whole, "{case}: {in_force:?}");
+        let reply = (host.take_replies().into_iter()).find(|reply| reply.number == request.number);
+        answer = answer.or(reply.map(|reply| reply.answer));
+    }
+    let is_committed = matches!(answer, Some(Ok(Answer::Committed { .. })));
+    if controller == Controller::Comms {
+        host.reconnect();
+    } else {
+        assert_eq!(
+            host.ask_patiently(Operation::Zero),
+            Ok(Answer::Done),
+            "{case}"
+        );
+    }
+    host.ask(Operation::Disarm).expect("is never refused");
+    run.recover();
+    let values = *run.board().comms().values();
+    if controller == Controller::Comms {
+        // It was not saved.
+        assert_eq!(values, kept, "{case}");
+    } else {
+        let is_kept = values == kept && !is_committed;
+        assert!(values == proposed || is_kept, "{case}");
+    }
+    is_committed
 }

@@ -74,12 +74,25 @@ impl EffectSettings {
         let slope: f64 = self.bounds().map(|most| most.slope_nm_per_rad).sum();
         self.largest_torque_nm(joint) + slope * core::f64::consts::PI
     }
+
+    /// The largest torque that the motor gets besides that of symptoms and joint, N·m.
+    pub fn added_bound_nm(&self) -> f64 {
+        let friction = self.friction_compensation.as_ref();
+        let friction_nm = friction.map_or(0.0, |gear| gear.share * gear.friction_nm);
+        let bone = self.bone_shaping.as_ref();
+        // Ringing on the actuator is no torque of the motor.
+        let bone_nm = bone
+            .filter(|bone| bone.output == 0)
+            .map_or(0.0, |bone| bone.limit_nm);
+        friction_nm + bone_nm
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::render::effects::SPECS;
+    use crate::render::effects::bone_shaping::BoneShapingSettings;
     use crate::render::effects::clasp_knife::ClaspKnifeSettings;
     use crate::render::effects::clonus::ClonusSettings;
     use crate::render::effects::cogwheel::CogwheelSettings;
@@ -143,6 +156,31 @@ mod tests {
         assert_eq!(EffectSettings::default().check(Some(&stiffer)), Ok(()));
         let nm = settings.largest_torque_nm(Some(&joint));
         assert!((nm - (0.4 + 4.0 + 2.0 + 0.4)).abs() < 1e-12, "{nm}");
+    }
+
+    #[test]
+    fn what_is_added_has_a_bound() {
+        let friction = Some(FrictionCompensationSettings::default());
+        let bone = |output| {
+            Some(BoneShapingSettings {
+                output,
+                ..BoneShapingSettings::default()
+            })
+        };
+        for (friction_compensation, bone_shaping, expected_nm) in [
+            (None, None, 0.0),
+            (friction, None, 0.4),
+            (friction, bone(0), 1.0),
+            (None, bone(1), 0.0),
+        ] {
+            let added = EffectSettings {
+                friction_compensation,
+                bone_shaping,
+                ..stiff()
+            };
+            let bound_nm = added.added_bound_nm();
+            assert!((bound_nm - expected_nm).abs() < 1e-12, "{bound_nm}");
+        }
     }
 
     #[test]

@@ -36,21 +36,15 @@ const PAGE: Page = Page {
 /// A tick that has begun is gone through.
 const AT_ONCE_TICKS: u32 = 2;
 
-/// The times of all cases of each fault, tried on all cores.
-fn all_times() -> Vec<Vec<Times>> {
+/// What so many tries give, on all cores.
+fn on_all_cores<T: Send + Sync>(count: usize, try_one: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(0);
-    let all = FAULTS.each_ref().map(|_| OnceLock::new());
+    let all: Vec<_> = (0..count).map(|_| OnceLock::new()).collect();
     let work = || {
         loop {
             let place = next.fetch_add(1, Relaxed);
-            let Some((spec, times)) = FAULTS.get(place).zip(all.get(place)) else {
-                break;
-            };
-            let Provocation::Cases(cases) = provocation(spec.fault) else {
-                continue;
-            };
-            let tried = cases.iter().map(|case| trial::run(spec, case)).collect();
-            assert!(times.set(tried).is_ok(), "each is tried once");
+            let Some(result) = all.get(place) else { break };
+            assert!(result.set(try_one(place)).is_ok(), "each is tried once");
         }
     };
     thread::scope(|scope| {
@@ -58,9 +52,19 @@ fn all_times() -> Vec<Vec<Times>> {
             scope.spawn(work);
         }
     });
-    all.into_iter()
-        .map(|times| times.into_inner().unwrap_or_default())
-        .collect()
+    let results = all.into_iter().map(OnceLock::into_inner);
+    results.map(|result| result.expect("a result")).collect()
+}
+
+/// The times of all cases of each fault.
+fn all_times() -> Vec<Vec<Times>> {
+    on_all_cores(FAULTS.len(), |place| {
+        let spec = &FAULTS[place];
+        match provocation(spec.fault) {
+            Provocation::Cases(cases) => cases.iter().map(|case| trial::run(spec, case)).collect(),
+            Provocation::None(_) => Vec::new(),
+        }
+    })
 }
 
 #[test]

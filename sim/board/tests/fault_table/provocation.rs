@@ -12,9 +12,9 @@ use crate::case::Moment::Arming;
 use crate::case::{Case, case};
 use crate::support::Host;
 use crepitus_board::board::Controller::{Comms, Drive};
-use crepitus_protocol::Fault;
 use crepitus_protocol::management::ResetCause::{Requested, Watchdog};
 use crepitus_protocol::telemetry::NO_CURRENT;
+use crepitus_protocol::{Fault, LimitReason};
 
 /// How a fault comes about.
 pub(crate) enum Provocation {
@@ -103,6 +103,12 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
         Fault::CurrentBesideTorque => vec![
             comms::says("it says 0.5 A", |block| {
                 comms::each(block, |sample| sample.current_ma = 500);
+            }),
+            comms::says("the same, and that its voltage is at the limit", |block| {
+                comms::each(block, |sample| {
+                    sample.current_ma = 500;
+                    sample.flags = sample.flags.with_limit(LimitReason::Voltage);
+                });
             }),
             comms::says("it has no current", |block| {
                 comms::each(block, |sample| sample.current_ma = NO_CURRENT);

@@ -8,7 +8,7 @@ use crate::case::Moment::Disarmed;
 use crate::case::{Case, case, is_disarmed};
 use crepitus_board::board::Controller::{Comms, Drive};
 use crepitus_protocol::management::ResetCause::{BrownOut, Panic, Power, Watchdog};
-use crepitus_protocol::telemetry::{Block, BlockFlags, Sample};
+use crepitus_protocol::telemetry::{Block, BlockFlags, Sample, SampleFlags};
 use crepitus_protocol::{State, schema};
 
 pub(super) fn torque_beyond_bounds() -> Vec<Case> {
@@ -21,6 +21,19 @@ pub(super) fn torque_beyond_bounds() -> Vec<Case> {
         }),
         says("its model gives more than Ts", |block| {
             each(block, |sample| sample.model_torque_nm = -0.45);
+        }),
+        says("its torque is not its model's", |block| {
+            each(block, |sample| {
+                sample.torque_nm = 0.3;
+                sample.model_torque_nm = 0.1;
+            });
+        }),
+        says("the same in three samples of four", |block| {
+            for (sample, n) in block.samples.iter_mut().zip(0..) {
+                if n % 4 != 3 {
+                    (sample.torque_nm, sample.model_torque_nm) = (0.3, 0.1);
+                }
+            }
         }),
         says("its torque is NaN", |block| {
             each(block, |sample| sample.torque_nm = f32::NAN);
@@ -49,6 +62,11 @@ pub(super) fn torque_outside_range() -> Vec<Case> {
         }),
         says("it knows no zero", |block| {
             block.flags.0 &= !BlockFlags::ZEROED;
+        }),
+        says("it has no plausible count", |block| {
+            each(block, |sample| {
+                sample.flags = sample.flags.with(SampleFlags::LOST, true);
+            });
         }),
     ]
 }
