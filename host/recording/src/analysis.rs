@@ -8,6 +8,7 @@ use crate::books::Recount;
 use crate::parameters::InForce;
 use crate::recording::Recording;
 use crate::row::Row;
+use crepitus_protocol::Values;
 use crepitus_scene::trace::EventRecord;
 pub use object::Object;
 use object::ObjectTracker;
@@ -31,6 +32,8 @@ pub struct Derived {
 pub struct Analysis<'r> {
     recording: &'r Recording,
     in_force: InForce<'r>,
+    /// The parameters of the last row, if they are known.
+    values: Option<Values>,
     rows: u64,
     /// Of the ticks alone.
     recount: Recount<'r>,
@@ -46,6 +49,7 @@ impl<'r> Analysis<'r> {
         Self {
             recording,
             in_force: recording.parameters().in_force(),
+            values: None,
             rows: 0,
             recount: Recount::new(recording.books()),
             nm_per_a: f64::NAN,
@@ -57,6 +61,7 @@ impl<'r> Analysis<'r> {
     /// Takes the next row.
     pub fn row(&mut self, row: &Row) -> Derived {
         if self.in_force.at(self.rows) {
+            self.values = self.in_force.values();
             let number = |name| self.in_force.number(name).unwrap_or(f64::NAN);
             self.nm_per_a = number("motor.torque_constant_nm_per_a") * number("encoder.gear_ratio");
             let settings = self.in_force.joint_settings();
@@ -74,6 +79,11 @@ impl<'r> Analysis<'r> {
                 .current_a
                 .map_or(f64::NAN, |amperes| -f64::from(amperes) * self.nm_per_a),
         }
+    }
+
+    /// The parameters in force in the last row, if they are known.
+    pub fn values(&self) -> Option<&Values> {
+        self.values.as_ref()
     }
 
     /// The summary of all rows so far.

@@ -43,8 +43,8 @@ pub struct ReportColumns {
     settings: EffectSettings,
     /// Crepitus was on at any time, or may have been.
     has_crepitus: bool,
-    /// The symptoms that were on at any time.
-    symptoms: Vec<&'static EffectSpec>,
+    /// The symptoms that were on at any time, with their switches.
+    symptoms: Vec<(&'static EffectSpec, Option<u8>)>,
     /// The vibration actuator was.
     has_coil: bool,
 }
@@ -71,7 +71,7 @@ impl ReportColumns {
             let Some(first) = while_on.next() else {
                 continue;
             };
-            symptoms.push(spec);
+            symptoms.push((spec, switch));
             if while_on.all(|others| others == first) {
                 for (id, value) in first {
                     unchanged.set(id, value);
@@ -100,7 +100,7 @@ impl ReportColumns {
     /// Those of every recording, those of crepitus, the phase of each symptom, and the current of
     /// the vibration actuator's coil.
     pub fn columns(&self) -> Vec<Column> {
-        let phases = self.symptoms.iter().filter_map(|spec| spec.phases);
+        let phases = self.symptoms.iter().filter_map(|(spec, _)| spec.phases);
         let phases = phases.map(|phases| Column {
             name: phases.column,
             kind: ColumnKind::Whole,
@@ -115,9 +115,17 @@ impl ReportColumns {
         first.chain(phases).chain(coil).collect()
     }
 
-    /// Their values in a row, in the place of what `values` held; those of symptoms and coil are
-    /// NaN while nothing is rendered, those of the object where its parameters are not in force.
-    pub fn read(&self, row: &Row, derived: &Derived, values: &mut Vec<f64>) {
+    /// Their values in a row, in the place of what `values` held. NaN stands for none: of the coil
+    /// and of symptoms while nothing is rendered, of symptoms and of the object while they are off
+    /// by the parameters `in_force`. Where these are unknown the object has its phase alone.
+    pub fn read(
+        &self,
+        row: &Row,
+        derived: &Derived,
+        in_force: Option<&Values>,
+        values: &mut Vec<f64>,
+    ) {
+        let is_off = |switch: u8| in_force.is_some_and(|values| !values.is_on(switch));
         values.clear();
         values.extend([
             row.time_s,
@@ -127,16 +135,18 @@ impl ReportColumns {
             derived.motor_torque_nm,
         ]);
         if self.has_crepitus {
-            values.extend([
-                f64::from(row.flags.phase_sign()),
-                derived.object.theta_rad,
-                derived.object.theta_dot_rad_s,
-            ]);
+            let phase = if is_off(parameters::id::CREPITUS) {
+                f64::NAN
+            } else {
+                f64::from(row.flags.phase_sign())
+            };
+            let object = &derived.object;
+            values.extend([phase, object.theta_rad, object.theta_dot_rad_s]);
         }
         let is_armed = row.flags.limit() != LimitReason::NotArmed;
         let phases = row.phases;
-        values.extend(self.symptoms.iter().map(|spec| {
-            if is_armed {
+        values.extend(self.symptoms.iter().map(|(spec, switch)| {
+            if is_armed && !switch.is_some_and(is_off) {
                 f64::from(phases.get(spec))
             } else {
                 f64::NAN
@@ -177,6 +187,10 @@ mod tests {
     }
 
     fn values(columns: &ReportColumns, row: &Row) -> Vec<f64> {
+        values_under(columns, row, None)
+    }
+
+    fn values_under(columns: &ReportColumns, row: &Row, in_force: Option<&Values>) -> Vec<f64> {
         let derived = Derived {
             object: Object {
                 theta_rad: 0.0,
@@ -186,7 +200,7 @@ mod tests {
             motor_torque_nm: 0.5,
         };
         let mut values = vec![7.0];
-        columns.read(row, &derived, &mut values);
+        columns.read(row, &derived, in_force, &mut values);
         assert_eq!(values[ReportColumns::ALWAYS - 1], 0.5);
         values
     }
@@ -280,5 +294,32 @@ mod tests {
         };
         let not_armed = values(&effects, &not_armed);
         assert!(not_armed.last().is_some_and(|phase| phase.is_nan()));
+    }
+
+    #[test]
+    fn phases_are_known_while_their_effect_is_on() {
+        let mut both = Values::default();
+        both.set(id("lead-pipe.render"), 1.0);
+        let mut neither = both;
+        neither.set(id("lead-pipe.render"), 0.0);
+        neither.set(parameters::id::CREPITUS, 0.0);
+        let effects = ReportColumns::of(&History(vec![set(&both, 0), set(&neither, 10)]));
+        let phases = Row::default().phases.with_named("lead-pipe", "sliding");
+        let row = Row {
+            phases: phases.expect("a phase"),
+            ..Row::default()
+        };
+        let read = |in_force| {
+            let values = values_under(&effects, &row, in_force);
+            (
+                values[ReportColumns::ALWAYS],
+                *values.last().expect("a phase"),
+            )
+        };
+        assert_eq!(read(Some(&both)), (0.0, 1.0));
+        let (object, lead_pipe) = read(Some(&neither));
+        assert!(object.is_nan() && lead_pipe.is_nan());
+        // What is not known to be off may be on.
+        assert_eq!(read(None), (0.0, 1.0));
     }
 }

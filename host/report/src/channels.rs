@@ -57,6 +57,8 @@ pub(crate) struct Sample {
     pub(crate) omega: f64,
     pub(crate) encoder_omega: f64,
     pub(crate) phase: Option<Phase>,
+    /// The phase may lack a value, and lacks it: nothing of the object is rendered.
+    pub(crate) is_off: bool,
     pub(crate) theta: f64,
     pub(crate) theta_dot: f64,
     pub(crate) torque: f64,
@@ -128,6 +130,7 @@ impl Channels {
             omega: value(self.omega),
             encoder_omega: value(self.encoder_omega),
             phase: phase_of(value(self.phase)),
+            is_off: false,
             theta: value(self.theta),
             theta_dot: value(self.theta_dot),
             torque: value(self.torque),
@@ -138,6 +141,14 @@ impl Channels {
             hand_torque: value(self.hand_torque),
             hand_fast: f64::NAN,
         }
+    }
+
+    /// Whether a row says that the object is off: its phase has no value, in a column from
+    /// which on values may be lacking.
+    pub(crate) fn is_off(&self, row: &[f64], may_lack_from: usize) -> bool {
+        let phase = self.phase.filter(|place| *place >= may_lack_from);
+        let phase = phase.and_then(|place| row.get(place));
+        phase.is_some_and(|phase| phase.is_nan())
     }
 
     pub(crate) fn has_torque(&self) -> bool {

@@ -157,8 +157,15 @@ fn range<'f>(figures: &'f Figures, torque: &[Point]) -> Vec<Panel<'f>> {
     ]
 }
 
-/// Stick at the bottom, the slips above it.
+/// Stick at the bottom, the slips above it; nothing where there was no object.
 fn draw_shares(plot: &mut Plot, bins: &[Bin]) {
+    let known = bins.split(|bin| bin.shares().is_none());
+    for bins in known.filter(|bins| !bins.is_empty()) {
+        draw_known_shares(plot, bins);
+    }
+}
+
+fn draw_known_shares(plot: &mut Plot, bins: &[Bin]) {
     let mut floor = Vec::new();
     let mut over_stick = Vec::new();
     let mut over_positive = Vec::new();

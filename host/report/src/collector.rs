@@ -210,7 +210,8 @@ impl Collector {
         if values.iter().enumerate().any(is_broken) {
             self.broken_rows += 1;
         }
-        let sample = self.channels.sample(values);
+        let mut sample = self.channels.sample(values);
+        sample.is_off = self.channels.is_off(values, self.always);
         if sample.time.is_nan() {
             return;
         }
@@ -302,11 +303,17 @@ impl Collector {
             plant.hand(sample);
         }
         if self.channels.has_torque() {
+            if sample.is_off {
+                self.envelope.off(sample.time);
+                self.choice.gap();
+                self.hysteresis.gap();
+            } else {
+                self.choice.row(sample);
+                self.hysteresis
+                    .row(sample.angle, sample.omega, sample.theta);
+            }
             self.envelope.row(sample.time, sample.torque, sample.phase);
             self.whole.row(sample);
-            self.choice.row(sample);
-            self.hysteresis
-                .row(sample.angle, sample.omega, sample.theta);
             if let Some(welch) = &mut self.welch {
                 welch.push(sample.torque);
             }

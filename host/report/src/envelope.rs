@@ -120,6 +120,12 @@ impl Envelope {
         self.since = f64::NAN;
     }
 
+    /// From here on the object is in no phase, until a row or an event says so.
+    pub(crate) fn off(&mut self, time: f64) {
+        self.advance(time);
+        self.phase = None;
+    }
+
     pub(crate) fn row(&mut self, time: f64, torque: f64, phase: Option<Phase>) {
         self.advance(time);
         // With events, only they end a phase.
@@ -292,6 +298,24 @@ mod tests {
             let rows: u64 = envelope.bins.iter().map(|b| b.count).sum();
             assert_eq!(rows, 100_000);
         }
+    }
+
+    #[test]
+    fn nothing_of_the_time_in_which_the_object_is_off_counts_for_a_phase() {
+        let mut envelope = Envelope::new(1);
+        envelope.row(0.0, 0.0, Some(Phase::Stick));
+        envelope.event(&event(0.5, EventKind::Break, 0, 1));
+        for time in [1.0, 1.5, 2.0] {
+            envelope.off(time);
+            envelope.row(time, 0.0, None);
+        }
+        envelope.row(2.5, 0.0, Some(Phase::Stick));
+        envelope.row(3.0, 0.0, Some(Phase::Stick));
+        let envelope = envelope.finish();
+        let sum = |pick: fn(&Bin) -> f64| envelope.bins.iter().map(pick).sum::<f64>();
+        assert_eq!(sum(|bin| bin.stick_s), 1.0);
+        assert_eq!(sum(|bin| bin.positive_s), 0.5);
+        assert_eq!(sum(|bin| bin.negative_s), 0.0);
     }
 
     #[test]

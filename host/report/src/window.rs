@@ -28,7 +28,8 @@ pub(crate) struct Window {
     pub(crate) start: f64,
     pub(crate) end: f64,
     events: Vec<EventRecord>,
-    changes: Vec<(f64, Phase)>,
+    /// No phase: the object is off.
+    changes: Vec<(f64, Option<Phase>)>,
     overflowed: bool,
     speed_sum: f64,
     speed_count: u64,
@@ -70,11 +71,13 @@ impl Window {
         self.motor.push(sample.time, sample.motor_torque);
         self.hand_fast.push(sample.time, sample.hand_fast);
         self.orbit.row(sample);
-        // With events, only they end a phase.
-        if self.events.is_empty()
+        // With events, only they end a phase, unless the object goes off.
+        if sample.is_off {
+            self.change(sample.time, None);
+        } else if (self.events.is_empty() || self.is_off())
             && let Some(phase) = sample.phase
         {
-            self.change(sample.time, phase);
+            self.change(sample.time, Some(phase));
         }
     }
 
@@ -96,11 +99,11 @@ impl Window {
             self.theta_dot.push(time, event.omega_rad_s);
         }
         self.orbit.event(event);
-        if self.changes.is_empty() {
-            self.change(time, Phase::from_sign(event.from));
+        if self.changes.is_empty() || self.is_off() {
+            self.change(time, Some(Phase::from_sign(event.from)));
         }
         self.events.push(*event);
-        self.change(time, Phase::from_sign(event.to));
+        self.change(time, Some(Phase::from_sign(event.to)));
     }
 
     fn extend(&mut self, time: f64) {
@@ -115,7 +118,14 @@ impl Window {
         }
     }
 
-    fn change(&mut self, time: f64, phase: Phase) {
+    /// Whether the object was off in the last row.
+    fn is_off(&self) -> bool {
+        self.changes
+            .last()
+            .is_some_and(|(_, phase)| phase.is_none())
+    }
+
+    fn change(&mut self, time: f64, phase: Option<Phase>) {
         if self.changes.last().map(|(_, last)| *last) == Some(phase) {
             return;
         }
@@ -160,10 +170,12 @@ impl Window {
         self.changes
             .iter()
             .zip(ends)
-            .map(|(&(start, phase), end)| Span {
-                from: start.max(from),
-                to: end.min(to),
-                phase,
+            .filter_map(|(&(start, phase), end)| {
+                Some(Span {
+                    from: start.max(from),
+                    to: end.min(to),
+                    phase: phase?,
+                })
             })
             .filter(|span| span.to > span.from)
             .collect()
@@ -218,6 +230,68 @@ mod tests {
         let edges: Vec<f64> = spans.iter().skip(1).map(|s| s.from).collect();
         assert_eq!(edges, expected);
         assert!(!window.overflowed());
+    }
+
+    #[test]
+    fn no_phase_is_shaded_while_the_object_is_off() {
+        let at = |time, phase, is_off| Sample {
+            time,
+            phase,
+            is_off,
+            ..Sample::nothing()
+        };
+        let stick = Some(Phase::Stick);
+        let span = |from, to| Span {
+            from,
+            to,
+            phase: Phase::Stick,
+        };
+        let window = |before: Option<&EventRecord>| {
+            let mut window = Window::new();
+            window.row(&at(0.0, stick, false));
+            if let Some(event) = before {
+                window.event(event);
+            }
+            for sample in [
+                at(1.0, None, true),
+                at(2.0, None, true),
+                at(3.0, stick, false),
+                at(4.0, stick, false),
+            ] {
+                window.row(&sample);
+            }
+            window.spans(0.0, 9.0)
+        };
+        assert_eq!(window(None), [span(0.0, 1.0), span(3.0, 4.0)]);
+        let slipped = EventRecord {
+            time_s: 0.5,
+            kind: EventKind::Break,
+            from: 0,
+            to: 1,
+            theta_rad: 0.0,
+            omega_rad_s: 1.0,
+            torque_before_nm: 0.4,
+            torque_after_nm: 0.2,
+        };
+        let slip = Span {
+            phase: Phase::from_sign(1),
+            ..span(0.5, 1.0)
+        };
+        let expected = [span(0.0, 0.5), slip, span(3.0, 4.0)];
+        assert_eq!(window(Some(&slipped)), expected);
+        // A row without the column is no object that is off.
+        let mut without = Window::new();
+        without.row(&at(0.0, None, false));
+        without.event(&slipped);
+        without.row(&at(1.0, None, false));
+        assert_eq!(
+            without.spans(0.0, 9.0),
+            [Span {
+                from: 0.5,
+                to: 1.0,
+                ..slip
+            }]
+        );
     }
 
     #[test]

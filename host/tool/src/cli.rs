@@ -44,7 +44,8 @@ pub(crate) struct DeviceArguments {
     #[arg(long, value_name = "DEVICE", global = true)]
     pub(crate) device: Option<String>,
 
-    /// With --device sim or emulated: the scene that sets its leg and parameters
+    /// With --device sim or emulated: the scene that sets its leg and parameters; armed with --zero
+    /// the leg begins straight, and is led to where the scene's motion begins at up to 30 deg/s
     /// [default: passive-examination].
     #[arg(long, value_name = "SCENE", global = true)]
     pub(crate) scene: Option<PathBuf>,

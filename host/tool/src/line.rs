@@ -2,12 +2,13 @@
 
 use crate::cli::DeviceArguments;
 use crate::failure::Failure;
+use crate::following::Arming;
 use crepitus_client::{Client, Error, Management, RequestKind, TransportError};
 pub(crate) use crepitus_connection::Connection as Line;
 use crepitus_connection::{OpenError, is_in_this_process, is_input};
 use crepitus_protocol::Session;
 use crepitus_protocol::host::Refusal;
-use crepitus_scene::{Overrides, shipped};
+use crepitus_scene::{Overrides, Scene, shipped};
 use crepitus_sharing::Program;
 use std::path::Path;
 
@@ -16,6 +17,16 @@ const SCENE: &str = "passive-examination";
 
 /// Opens the connection to the device that the arguments name.
 pub(crate) fn open(arguments: &DeviceArguments) -> Result<Line, Failure> {
+    opened(arguments, false)
+}
+
+/// Opens it for a command that arms like this. Where it sets the zero before, the leg of a device
+/// in this process begins straight: the device has the angles of the scene then.
+pub(crate) fn open_to_arm(arguments: &DeviceArguments, arming: Arming) -> Result<Line, Failure> {
+    opened(arguments, arming.arm && arming.zero)
+}
+
+fn opened(arguments: &DeviceArguments, begins_straight: bool) -> Result<Line, Failure> {
     let device = arguments.device.as_deref();
     if let Some(scene) = &arguments.scene
         && !device.is_some_and(is_in_this_process)
@@ -27,7 +38,12 @@ pub(crate) fn open(arguments: &DeviceArguments) -> Result<Line, Failure> {
         )));
     }
     let scene = arguments.scene.as_deref().unwrap_or(Path::new(SCENE));
-    let scene = || shipped::scene(scene, &Overrides::default());
+    let scene = || {
+        shipped::scene(scene, &Overrides::default()).map(|scene| Scene {
+            begins_straight,
+            ..scene
+        })
+    };
     Line::open(device, &command_line(), scene).map_err(not_open)
 }
 
@@ -49,7 +65,7 @@ fn not_open(error: OpenError) -> Failure {
     }
 }
 
-/// The same; a device in this process is not faster than real time.
+/// Opens the connection; a device in this process is not faster than real time.
 pub(crate) fn open_in_real_time(arguments: &DeviceArguments) -> Result<Line, Failure> {
     open(arguments).map(Line::in_real_time)
 }
@@ -57,6 +73,14 @@ pub(crate) fn open_in_real_time(arguments: &DeviceArguments) -> Result<Line, Fai
 /// Opens the connection and performs the handshake.
 pub(crate) fn connect(arguments: &DeviceArguments) -> Result<Client<Line>, Failure> {
     Client::connect(open(arguments)?).map_err(failure)
+}
+
+/// The same as [`open_to_arm`].
+pub(crate) fn connect_to_arm(
+    arguments: &DeviceArguments,
+    arming: Arming,
+) -> Result<Client<Line>, Failure> {
+    Client::connect(open_to_arm(arguments, arming)?).map_err(failure)
 }
 
 /// The devices that the arguments name: without a name, all that are attached, or none, whose

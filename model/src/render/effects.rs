@@ -31,6 +31,7 @@ pub use faded::Faded;
 pub use kept::Kept;
 pub use phases::{PhaseSpec, Phases};
 pub use slewed::Slewed;
+pub use static_limits::Reach;
 pub use together::MOST_SHARE_AT_A_WALL;
 
 use super::input_check::Checked;

@@ -2,6 +2,7 @@
 
 use super::rig::*;
 
+use crepitus_model::Real;
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::clasp_knife::ClaspKnifeSettings;
 use crepitus_model::render::effects::clonus::ClonusSettings;
@@ -54,6 +55,32 @@ fn a_cogwheel_at_rest_gives_once() {
     let later: Vec<_> = run.words.iter().filter(|(_, t)| *t > 0.17).collect();
     assert!(later.is_empty(), "{later:?}");
     near(run.at(1.9), 0.8, 1e-9);
+}
+
+/// Times of catches and gives of a cogwheel whose joint turns back half way between two edges.
+fn turned_back_half_way<F: Real>() -> [Vec<f64>; 2] {
+    let settings = EffectSettings {
+        cogwheel: Some(CogwheelSettings::default()),
+        ..EffectSettings::default()
+    };
+    let run = only::<F>(settings, 0.0).run(0.5, |t| {
+        let share = (t - 0.28) / 0.28;
+        (0.3 * (1.0 - share * share), -0.6 / 0.28 * share)
+    });
+    [Word::Catch, Word::Give].map(|word| run.times(word))
+}
+
+/// At 0.32 s it is where it was at 0.24 s, to the bit in f32, with the torque of neither limit.
+#[test]
+fn a_cogwheel_that_is_turned_back_between_two_edges_catches() {
+    for [catches, gives] in [turned_back_half_way::<f64>(), turned_back_half_way::<f32>()] {
+        for (found, expected) in [(catches, [0.16, 0.32, 0.48]), (gives, [0.08, 0.24, 0.4])] {
+            assert_eq!(found.len(), expected.len(), "{found:?}");
+            for (found, expected) in found.iter().zip(expected) {
+                near(*found, expected, 1e-6);
+            }
+        }
+    }
 }
 
 #[test]

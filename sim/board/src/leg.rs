@@ -20,8 +20,12 @@
 //! Strokes, sines and constant velocities continue for ever. Velocity knots and
 //! recordings are followed to the end of the scene; the motion then slows down
 //! within a tenth of a second, and rests.
+//!
+//! A leg that [begins straight](Scene::begins_straight) is at 0° until the motor is driven, and is led
+//! to the motion's start before that begins.
 
 mod coil;
+mod lead_in;
 mod sensors;
 #[cfg(test)]
 mod tests;
@@ -38,6 +42,7 @@ use crepitus_plant::effects::motor::{self, MotorNumbers};
 use crepitus_plant::energy_balance::EnergyBalance;
 use crepitus_plant::{Motion, Plant};
 use crepitus_scene::{Scene, Walk};
+use lead_in::LeadIn;
 use sensors::Counter;
 
 /// Tick of the drive, s.
@@ -50,6 +55,10 @@ const DISCHARGE_S: f64 = 0.1;
 pub struct Leg {
     plant: Plant<Bridge>,
     walk: Walk<Motion>,
+    /// What comes before the scene's motion, if anything does.
+    lead_in: Option<LeadIn>,
+    /// Time of the motions before this one, s.
+    before_s: f64,
     steps_per_half: u32,
     counter: Counter,
     /// Of the loop, and of the monitor.
@@ -68,9 +77,15 @@ pub struct Leg {
 }
 
 impl Leg {
-    /// The leg of a scene at the start of its motion. The bridge is open, the
+    /// The leg of a scene at the start of its motion, or straight. The bridge is open, the
     /// counter zero, whatever the angle.
     pub fn new(scene: &Scene) -> Self {
+        let lead_in = LeadIn::of(scene);
+        let straight = lead_in.as_ref().map(|_| Scene {
+            motion: Motion::rest(0.0),
+            ..scene.clone()
+        });
+        let scene = straight.as_ref().unwrap_or(scene);
         // A scene's steps are those of a tick.
         let steps_per_half = scene.substeps.div_ceil(2);
         let step_s = TICK_S / (2.0 * f64::from(steps_per_half));
@@ -82,6 +97,8 @@ impl Leg {
             begun: (plant.felt_nms(), 0.0),
             plant,
             walk: Walk::new(scene.endless_motion(), step_s),
+            lead_in,
+            before_s: 0.0,
             steps_per_half,
             current_sensors: [CurrentSensor::Right; 2],
             slow_sensors: SlowSensors::default(),
@@ -103,6 +120,7 @@ impl Leg {
     /// The second half of a tick.
     pub fn second_half(&mut self) {
         self.half();
+        self.lead();
         self.capacitors_v = if self.is_supplied {
             self.supply_v()
         } else {
@@ -120,6 +138,18 @@ impl Leg {
             self.walk.advance(&mut self.plant);
         }
         self.counter.turn_to(self.plant.shaft().angle_rad);
+    }
+
+    /// Goes on with another motion, if one begins with the next tick.
+    fn lead(&mut self) {
+        let Some(lead_in) = &mut self.lead_in else {
+            return;
+        };
+        let is_driven = matches!(self.terminals, Terminals::Driven(_));
+        if let Some(motion) = lead_in.tick(is_driven) {
+            self.before_s += self.walk.time_s();
+            self.walk.turn_to(motion);
+        }
     }
 
     /// From now on nobody holds the leg, whatever the scene's motion.
@@ -208,9 +238,9 @@ impl Leg {
         &self.slow_sensors
     }
 
-    /// Time since the start of the motion, s.
+    /// Time since the start of the motion, s; what leads to it included.
     pub fn time_s(&self) -> f64 {
-        self.walk.time_s()
+        self.before_s + self.walk.time_s()
     }
 
     /// The motor's shaft, referred to the joint.

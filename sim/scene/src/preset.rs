@@ -33,6 +33,7 @@ use crate::scene::effects::Presets;
 use crate::scene::stages::effect_settings;
 use crate::scene::{Crepitus, Overrides, Scene, device, effects};
 use crepitus_model::Parameters;
+use crepitus_model::control::device_limits::{LimitSettings, RangeSettings};
 use crepitus_model::parameters::{ParameterSpec, Tabled};
 use crepitus_model::render::effects::{EffectSettings, IS_SYMPTOM, SPECS};
 use crepitus_plant::assembly::Listed;
@@ -223,10 +224,10 @@ impl Preset {
         text
     }
 
-    /// That its effects can ask for more together than a device with this limit shows,
-    /// if they can.
-    pub fn caps_warning(&self, most_nm: f64) -> Option<String> {
-        device::caps_warning(&self.effect_settings(), self.joint(), most_nm)
+    /// Warns of effects that can ask for more than a device at its defaults shows.
+    pub fn caps_warning(&self) -> Option<String> {
+        let (limits, range) = (LimitSettings::default(), RangeSettings::default());
+        device::caps_warning(&self.effect_settings(), self.joint(), &limits, &range)
     }
 
     /// Checks what a device renders: each effect by itself, then all of them.

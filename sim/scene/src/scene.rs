@@ -47,6 +47,9 @@ pub struct Scene {
     pub motion_kind: MotionKind,
     /// The shaft's motion.
     pub motion: Motion,
+    /// On a simulated device the leg begins straight, at 0°, where the zero is set, and is led to the
+    /// motion's start. No key of a file, and nothing to a run.
+    pub begins_straight: bool,
     /// Seed of everything random, if the scene has any.
     pub seed: Option<u64>,
     /// How the joint is integrated.
@@ -189,6 +192,7 @@ impl Scene {
             duration_s,
             motion_kind: motion.kind,
             motion: motion.motion,
+            begins_straight: false,
             seed: motion.seed,
             solver,
             is_device,

@@ -31,6 +31,14 @@ impl<M: Borrow<Motion>> Walk<M> {
         }
     }
 
+    /// Goes on with another motion, from its beginning. It begins where this one is, with the same
+    /// velocity: both sides have that to the bit.
+    pub fn turn_to(&mut self, motion: M) {
+        self.piece = motion.borrow().piece(0.0);
+        self.motion = motion;
+        (self.n, self.time_s) = (0, 0.0);
+    }
+
     /// Steps so far.
     #[inline]
     pub fn steps(&self) -> u64 {

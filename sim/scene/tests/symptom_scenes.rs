@@ -3,7 +3,7 @@
 
 use crepitus_scene::run::columns;
 use crepitus_scene::trace::SymptomEvent;
-use crepitus_scene::{Observer, Overrides, Scene, run};
+use crepitus_scene::{Observer, Overrides, Scene, run, shipped};
 use serde_json::Value;
 use std::convert::Infallible;
 use std::fmt::Write;
@@ -211,4 +211,66 @@ fn symptoms_that_ask_for_more_than_the_device_shows_are_warned_of() {
     assert!(warned(true, 1.2));
     assert!(!warned(true, 0.5));
     assert!(!warned(false, 1.2));
+}
+
+#[test]
+fn a_growing_torque_is_warned_of() {
+    let warned = |of_lead_pipe: &str| {
+        let text = format!(
+            "version = 1\ntitle = \"a slope\"\nduration_s = 1.0\ndevice = true\n\
+             [motion]\nkind = \"constant\"\nvelocity_rad_s = 0.1\n[solver]\n{}\n\
+             [effects.lead-pipe]\ntorque_nm = 1.2\nneutral_deg = 45.0\n{of_lead_pipe}\n",
+            stepped("f32")
+        );
+        let scene = Scene::parse(Path::new("slope.toml"), &text, &Overrides::default()).unwrap();
+        scene.warnings
+    };
+    // 75° from its neutral angle the spring has 3.93 N·m.
+    let warnings = warned("elastic_nm_per_rad = 3.0");
+    let words = "the symptom can ask for 5.1 N·m, and the device shows 4.5 N·m at most";
+    assert!(warnings.iter().any(|w| w.contains(words)), "{warnings:?}");
+    let below = warned("elastic_nm_per_rad = 2.5");
+    assert!(
+        !below.iter().any(|w| w.contains("can ask for")),
+        "{below:?}"
+    );
+}
+
+/// Words and times of the teeth of the shipped examination.
+fn teeth(overrides: &Overrides) -> Vec<(&'static str, f64)> {
+    let scene = shipped::scene(Path::new("cogwheel-examination"), overrides).unwrap();
+    let mut keep = Keep::default();
+    let Ok(_) = run(&scene, &mut keep) else {
+        panic!("it did not run");
+    };
+    let own = keep.events.iter().filter(|e| !e.word.is_of_play());
+    own.map(|e| (e.word.name(), e.time_s)).collect()
+}
+
+/// In the scene the leg turns back at 2.2 s, half way between two edges.
+#[test]
+fn no_tooth_of_the_examination_is_lost_in_f32() {
+    let of = |solver: &str, precision: Option<&str>| {
+        teeth(&Overrides {
+            solver: Some(solver.to_owned()),
+            precision: precision.map(str::to_owned),
+            ..Overrides::default()
+        })
+    };
+    let exact = of("reference", None);
+    assert!(
+        exact.iter().any(|(_, t)| (t - 2.24).abs() < 1e-9),
+        "{exact:?}"
+    );
+    for precision in ["f64", "f32"] {
+        let found = of("exact-events", Some(precision));
+        let words = |list: &[(&'static str, f64)]| -> Vec<_> {
+            list.iter().map(|(word, _)| *word).collect()
+        };
+        assert_eq!(words(&found), words(&exact), "{precision}: {found:?}");
+        for ((word, found_s), (_, exact_s)) in found.iter().zip(&exact) {
+            let off_s = (found_s - exact_s).abs();
+            assert!(off_s < 1e-6, "{precision}: {word} at {found_s}, {exact_s}");
+        }
+    }
 }

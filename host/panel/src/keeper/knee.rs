@@ -57,13 +57,13 @@ impl<T: Transport> Keeper<'_, T> {
         Ok(json!({ "revision": revision.0 }))
     }
 
-    /// Tells pages if the effects can ask for more together than the device shows.
+    /// Tells pages if the effects can ask for more than the device shows.
     fn warn_of_caps(&mut self) {
         let Ok(settings) = DeviceSettings::of(&self.values) else {
             return;
         };
         let joint = settings.crepitus.as_ref().map(|joint| &joint.parameters);
-        let warning = caps_warning(&settings.effects, joint, settings.limits.torque_nm);
+        let warning = caps_warning(&settings.effects, joint, &settings.limits, &settings.range);
         self.message = warning.or(self.message.take());
     }
 

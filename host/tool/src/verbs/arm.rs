@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::following::{Arming, End, Follower, follow};
 use crate::interrupt;
 use crate::keys::Keys;
-use crate::line::{Line, connect};
+use crate::line::{Line, connect_to_arm};
 use clap::Args;
 use crepitus_client::Client;
 use crepitus_protocol::telemetry::Block;
@@ -72,14 +72,10 @@ impl Follower for UntilKey {
 
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     interrupt::listen();
-    let mut client = connect(&arguments.device)?;
+    let arming = Arming::armed(arguments.zero);
+    let mut client = connect_to_arm(&arguments.device, arming)?;
     let mut until_key = UntilKey { keys: None };
-    let end = follow(
-        &mut client,
-        arguments.for_s,
-        Arming::armed(arguments.zero),
-        &mut until_key,
-    );
+    let end = follow(&mut client, arguments.for_s, arming, &mut until_key);
     // Restores the terminal before anything is printed.
     drop(until_key);
     let done = match end? {

@@ -8,7 +8,7 @@ use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Arming, Follower, follow};
 use crate::interrupt;
-use crate::line::{Line, failure, failure_with, holder, named, open_in_real_time};
+use crate::line::{Line, failure, failure_with, holder, named, open_to_arm};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use crepitus_client::{Begin, Client};
@@ -67,7 +67,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             "monitor needs a terminal for its screen and its keys: `crepitus stream` prints samples instead",
         ));
     }
-    let mut client = Client::connect(open_in_real_time(&arguments.device)?).map_err(failure)?;
+    let line = open_to_arm(&arguments.device, arguments.arming)?.in_real_time();
+    let mut client = Client::connect(line).map_err(failure)?;
     client.subscribe().map_err(failure)?;
     let target = arguments.target.as_deref().and_then(Target::find);
     let mut monitor = Monitor::new(client.port(), arguments.arming, target);

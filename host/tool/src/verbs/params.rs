@@ -281,9 +281,9 @@ impl Done {
     }
 }
 
-/// That the effects of a device can ask for more together than its limit, if they can.
+/// Warns of effects of a device that can ask for more than its limit.
 fn caps_warning_of(values: &Values) -> Option<String> {
     let settings = DeviceSettings::of(values).ok()?;
     let joint = settings.crepitus.as_ref().map(|joint| &joint.parameters);
-    caps_warning(&settings.effects, joint, settings.limits.torque_nm)
+    caps_warning(&settings.effects, joint, &settings.limits, &settings.range)
 }

@@ -4,7 +4,7 @@ use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Arming, follow};
 use crate::interrupt;
-use crate::line::connect;
+use crate::line::connect_to_arm;
 use crate::recorded::{Recorded, print_ended, report_command};
 use clap::Args;
 use crepitus_client::Unheard;
@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         return Err(Failure::input("--for: expected a time above 0, got 0"));
     }
     let file = &arguments.file;
-    let mut client = connect(&arguments.device)?;
+    let mut client = connect_to_arm(&arguments.device, arguments.arming)?;
     let mut recorded = Recorded::begin(&mut client, file, &arguments.title)?;
     let end = follow(
         &mut client,

@@ -145,7 +145,7 @@ pub(super) fn write_into(
         note_step(&mut collector, before.as_ref(), &row, recording.books());
         before = Some(row);
         let derived = analysis.row(&row);
-        report_columns.read(&row, &derived, &mut values);
+        report_columns.read(&row, &derived, analysis.values(), &mut values);
         collector.row(&values);
         if let Some(listener) = &mut listener {
             listener.row(&values)?;
@@ -279,7 +279,7 @@ mod tests {
     use crepitus_protocol::management::Identity;
     use crepitus_protocol::parameters::{find, id};
     use crepitus_protocol::telemetry::{Block, BlockFlags};
-    use crepitus_protocol::{State, Values};
+    use crepitus_protocol::{Revision, State, Values};
     use crepitus_recording::{Begin, Metadata, Recorder};
     use std::ffi::OsStr;
     use std::fs;
@@ -302,6 +302,11 @@ mod tests {
 
     /// The page of a recording of these blocks under these parameters.
     fn page_of(values: &Values, blocks: impl Iterator<Item = Block>) -> String {
+        page_under(&[(Block::default().revision, *values)], blocks)
+    }
+
+    /// The same under the parameters of the revision of each block.
+    fn page_under(revisions: &[(Revision, Values)], blocks: impl Iterator<Item = Block>) -> String {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a");
         let metadata = Metadata::new("a test", &Identity::default(), None);
@@ -312,7 +317,9 @@ mod tests {
             start: 1,
         };
         recorder.subscribed(begin).unwrap();
-        recorder.announce(Block::default().revision, values);
+        for (revision, values) in revisions {
+            recorder.announce(*revision, values);
+        }
         for block in blocks {
             recorder.block(&block).unwrap();
         }
@@ -388,6 +395,32 @@ mod tests {
         for part in ["Ts", "broke loose", "imaginary object", "rendered together"] {
             assert!(!alone.contains(part), "{part}");
         }
+    }
+
+    /// The object slips while crepitus is on, and has no phase after: the sample's flags have that
+    /// of a stick then, which is 0.
+    #[test]
+    fn no_stick_is_shaded_while_crepitus_is_off() {
+        let on = Values::default();
+        let mut off = on;
+        off.set(id::CREPITUS, 0.0);
+        let [first, second] = [Revision(1), Revision(2)];
+        let blocks = || {
+            (0..200).map(move |n| {
+                let mut block = block(1_000 + 20 * n, 1);
+                block.revision = if n < 100 { first } else { second };
+                for sample in &mut block.samples {
+                    let sign = i8::from(n < 100);
+                    sample.flags = sample.flags.with_phase(sign);
+                }
+                block
+            })
+        };
+        let is_shaded = |page: &str, phase: &str| page.contains(&format!("</span>{phase}</li>"));
+        let page = page_under(&[(first, on), (second, off)], blocks());
+        assert!(is_shaded(&page, "slip +") && !is_shaded(&page, "stick"));
+        let always_on = page_under(&[(first, on), (second, on)], blocks());
+        assert!(is_shaded(&always_on, "slip +") && is_shaded(&always_on, "stick"));
     }
 
     const BLANK: &str = "Blank between dotted lines";

@@ -4,7 +4,7 @@ use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print};
 use crate::following::{Arming, Follower, follow};
 use crate::interrupt;
-use crate::line::{Line, connect, failure};
+use crate::line::{Line, connect_to_arm, failure};
 use crate::status_line::StatusLine;
 use clap::{Args, ValueEnum};
 use crepitus_client::Client;
@@ -79,7 +79,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     } else {
         arguments.format
     };
-    let mut client = connect(&arguments.device)?;
+    let mut client = connect_to_arm(&arguments.device, arguments.arming)?;
     client.subscribe().map_err(failure)?;
     let mut printing = Printing {
         samples: Samples::default(),

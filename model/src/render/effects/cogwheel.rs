@@ -385,8 +385,11 @@ impl<F: Real> Cogwheel<F> {
         self.play.put(&place, after_nm, hold);
         let moved_rad = travel.to.beyond(&self.switched, travel.rad_per_count);
         self.switched = travel.to;
+        let flicker_rad = self.with.flicker_rad;
+        // A joint that turned back since the last edge may be where it was then, and moves.
+        let moves = moved_rad.abs() > flicker_rad || travel.delta_rad.abs() > flicker_rad;
         // At rest one give is felt, then there is silence.
-        if moved_rad.abs() > self.with.flicker_rad || after_nm != before_nm {
+        if moves || after_nm != before_nm {
             let word = if is_high { Word::Catch } else { Word::Give };
             on_change.hear(Change::at(word, fraction, before_nm, after_nm));
         }

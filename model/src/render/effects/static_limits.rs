@@ -7,6 +7,7 @@
 //!
 //! Angles are those of the joint, rad; torques N·m, positive against growing angle.
 
+use super::EffectSettings;
 use super::clasp_knife::ClaspKnifeSettings;
 use super::clonus::ClonusSettings;
 use super::cogwheel::CogwheelSettings;
@@ -16,6 +17,58 @@ use super::range_limit::{EndFeel, RangeLimitSettings};
 use super::spasticity::SpasticitySettings;
 use super::symptom::sense;
 use super::texture::TextureSettings;
+use crate::control::device_limits::{LimitSettings, RangeSettings};
+use crate::joint::Parameters;
+
+/// Where a leg may be moved, and how fast.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// End in extension, rad.
+    pub least_rad: f64,
+    /// End in flexion, rad.
+    pub most_rad: f64,
+    /// Largest speed, rad/s.
+    pub speed_rad_s: f64,
+}
+
+impl Reach {
+    /// The angles at which a device shows its whole torque, and the speed at which it disarms.
+    pub fn of(range: &RangeSettings, limits: &LimitSettings) -> Self {
+        Self {
+            least_rad: (range.least_deg + range.fade_deg).to_radians(),
+            most_rad: (range.most_deg - range.fade_deg).to_radians(),
+            speed_rad_s: limits.speed_rad_s,
+        }
+    }
+
+    /// The largest distance from an angle, rad.
+    fn furthest_rad(&self, angle_rad: f64) -> f64 {
+        let [least, most] = [self.least_rad, self.most_rad].map(|end| (end - angle_rad).abs());
+        least.max(most)
+    }
+}
+
+impl EffectSettings {
+    /// The largest torque that the symptoms and the joint can ask for together within a
+    /// reach, N·m: [`largest_torque_nm`](Self::largest_torque_nm) with what grows with the
+    /// angle. The line of a clasp-knife, which ends at its collapse, is in that already; a
+    /// reflex stays below its largest torque.
+    pub fn largest_within_nm(&self, joint: Option<&Parameters>, reach: &Reach) -> f64 {
+        let lead_pipe = self
+            .lead_pipe
+            .map(|s| (s.elastic_nm_per_rad, s.neutral_deg));
+        let cogwheel = self.cogwheel.map(|s| (s.elastic_nm_per_rad, s.neutral_deg));
+        let springs = [lead_pipe, cogwheel].into_iter().flatten();
+        let springs_nm: f64 = springs
+            .map(|(nm_per_rad, neutral_deg)| {
+                nm_per_rad * reach.furthest_rad(neutral_deg.to_radians())
+            })
+            .sum();
+        let muscle = self.spasticity.filter(SpasticitySettings::catches);
+        let beyond_nm = muscle.map_or(0.0, |s| s.largest_caught_nm(reach) - s.torque_nm);
+        self.largest_torque_nm(joint) + springs_nm + beyond_nm
+    }
+}
 
 impl EndFeel {
     /// env(p), N·m, so far beyond the end's place; nothing before it.
@@ -104,6 +157,27 @@ impl SpasticitySettings {
                 + self.stiffness_nm_per_rad * beyond_rad)
     }
 
+    /// The largest torque of a catch within a reach, N·m: that of the fastest stretch, as it
+    /// is caught or at the end of the reach. Between them it is less: the decay is convex, and
+    /// k grows at most with the largest speed.
+    pub fn largest_caught_nm(&self, reach: &Reach) -> f64 {
+        let sense = self.sense();
+        let (first_rad, last_rad) = if sense > 0.0 {
+            (reach.least_rad, reach.most_rad)
+        } else {
+            (reach.most_rad, reach.least_rad)
+        };
+        let fastest_rad_s = sense * reach.speed_rad_s;
+        // Angles along the stretch.
+        let caught = (sense * self.threshold_rad(fastest_rad_s)).max(sense * first_rad);
+        let travel_rad = (sense * last_rad - caught).max(0.0);
+        let peak_nm = self.catch_nm(fastest_rad_s);
+        let time_s = travel_rad / reach.speed_rad_s;
+        let left =
+            self.residual_share + (1.0 - self.residual_share) * libm::exp(-time_s / self.release_s);
+        peak_nm.max(peak_nm * left + self.stiffness_nm_per_rad * travel_rad)
+    }
+
     /// What the reflex comes to at an angle in a stretch without end at this velocity,
     /// but for its lateness, N·m, signed.
     pub fn reflex_nm(&self, angle_rad: f64, omega_rad_s: f64) -> f64 {
@@ -160,8 +234,8 @@ impl TextureSettings {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Effects;
     use super::super::tests::TIMING;
-    use super::super::{EffectSettings, Effects};
     use super::*;
     use crate::render::input_check::{InputCheck, InputLimits};
     use crate::render::{Addition, Check, Seen, Shown};
@@ -352,6 +426,91 @@ mod tests {
         let expected_nm = settings.reflex_nm(angle_rad - omega_rad_s * late_s, omega_rad_s);
         assert!((nm - expected_nm).abs() < 1e-3, "{nm} {expected_nm}");
         assert!(nm > 1.0 && !settings.catches() && settings.slowest_rad_s() == 0.0);
+    }
+
+    /// A reach of a device at its defaults: 0° to 120°.
+    fn reach() -> Reach {
+        Reach::of(&RangeSettings::defaults(), &LimitSettings::defaults())
+    }
+
+    #[test]
+    fn springs_count_as_far_from_their_neutral_angle_as_the_leg_can_be() {
+        let of = |neutral_deg| EffectSettings {
+            lead_pipe: Some(LeadPipeSettings {
+                torque_nm: 1.2,
+                elastic_nm_per_rad: 2.0,
+                neutral_deg,
+                ..LeadPipeSettings::defaults()
+            }),
+            ..EffectSettings::default()
+        };
+        let joint = Parameters::default();
+        for (neutral_deg, furthest_deg) in [(45.0, 75.0), (100.0, 100.0), (140.0, 140.0)] {
+            let nm = of(neutral_deg).largest_within_nm(Some(&joint), &reach());
+            let expected_nm = 0.4 + 1.2 + 2.0 * f64::to_radians(furthest_deg);
+            assert!((nm - expected_nm).abs() < 1e-12, "{nm} {expected_nm}");
+        }
+        let both = EffectSettings {
+            cogwheel: Some(CogwheelSettings {
+                elastic_nm_per_rad: 1.0,
+                neutral_deg: 0.0,
+                ..CogwheelSettings::defaults()
+            }),
+            ..of(45.0)
+        };
+        let more_nm =
+            both.largest_within_nm(None, &reach()) - of(45.0).largest_within_nm(None, &reach());
+        assert!(
+            (more_nm - 2.0 - 120_f64.to_radians()).abs() < 1e-12,
+            "{more_nm}"
+        );
+    }
+
+    /// Of both muscles, at the speed at which a device disarms and at slower ones.
+    #[test]
+    fn no_catch_exceeds_its_largest_torque_and_the_fastest_comes_close() {
+        for (muscles, threshold_deg, degrees) in [(0, 50.0, [0.0, 120.0]), (1, 70.0, [120.0, 0.0])]
+        {
+            for release_s in [0.06, 1.0] {
+                let settings = SpasticitySettings {
+                    muscles,
+                    threshold_deg,
+                    velocity_torque_nms_per_rad: 0.956,
+                    residual_share: 0.7,
+                    stiffness_nm_per_rad: 2.0,
+                    release_s,
+                    ..SpasticitySettings::defaults()
+                };
+                let of = EffectSettings {
+                    spasticity: Some(settings),
+                    ..EffectSettings::default()
+                };
+                let bound_nm = of.largest_within_nm(None, &reach());
+                let highest_nm = |deg_s| {
+                    let rows = follow(&of, &degrees, deg_s);
+                    rows.iter().fold(0.0_f64, |most, row| most.max(row.2.abs()))
+                };
+                // The last tick may end beyond the reach, by less than a tick.
+                let highest_allowed_nm = bound_nm + 1e-3;
+                for deg_s in [60.0, 150.0, 300.0] {
+                    assert!(highest_nm(deg_s) <= highest_allowed_nm, "{deg_s} deg/s");
+                }
+                let fastest_nm = highest_nm(reach().speed_rad_s.to_degrees());
+                let close = 0.99 * bound_nm..=highest_allowed_nm;
+                assert!(close.contains(&fastest_nm), "{fastest_nm} {bound_nm}");
+                assert!(bound_nm > 4.5 + 2.0, "{bound_nm}");
+            }
+        }
+        // A reflex has its largest torque, and no more.
+        let reflex = EffectSettings {
+            spasticity: Some(SpasticitySettings {
+                form: 1,
+                stiffness_nm_per_rad: 10.0,
+                ..SpasticitySettings::defaults()
+            }),
+            ..EffectSettings::default()
+        };
+        assert_eq!(reflex.largest_within_nm(None, &reach()), 4.5);
     }
 
     #[test]

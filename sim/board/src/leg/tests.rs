@@ -282,6 +282,112 @@ fn a_motion_that_ends_rests() {
     assert!((leg.time_s() - 2.595).abs() < 1e-12);
 }
 
+/// Ticks from the first drive to the motion at 20°: 0.1 s, and a stroke of 1.25 s.
+const LED_TICKS: u32 = 27_000;
+
+#[test]
+fn a_leg_that_begins_straight_is_led_to_the_motion_once_the_motor_is_driven() {
+    for effects in [&[][..], &["drivetrain", "cuff"]] {
+        let plain = scene(STROKES, effects);
+        let mut led = Leg::new(&Scene {
+            begins_straight: true,
+            ..plain.clone()
+        });
+        ticks(&mut led, 5_000);
+        assert!(led.shaft().angle_rad.abs() < 1e-12 && led.count() == 0);
+        // As arming pushes, and again without a drive.
+        led.set_terminals(Terminals::Driven(0.1));
+        ticks(&mut led, 320);
+        led.set_terminals(Terminals::Open);
+        ticks(&mut led, 3_000);
+        assert!(led.leg().angle_rad.abs() < 1e-12);
+        led.set_terminals(Terminals::Driven(0.0));
+        let mut before_rad = led.leg().angle_rad;
+        for n in 0..LED_TICKS {
+            // What was begun goes on without a drive, too.
+            if n == 3_000 {
+                led.set_terminals(Terminals::Open);
+            }
+            ticks(&mut led, 1);
+            let speed_rad_s = (led.leg().angle_rad - before_rad) / TICK_S;
+            assert!(
+                (-1e-6..30_f64.to_radians() + 1e-6).contains(&speed_rad_s),
+                "tick {n}: {speed_rad_s}"
+            );
+            before_rad = led.leg().angle_rad;
+        }
+        assert!((before_rad - 20_f64.to_radians()).abs() < 1e-12);
+        assert!(led.leg().omega_rad_s.abs() < 1e-12);
+        // From here on the scene's motion, to the end of its first stroke.
+        let mut plain = Leg::new(&plain);
+        for _ in 0..40_000 {
+            ticks(&mut led, 1);
+            ticks(&mut plain, 1);
+            let off_rad = led.leg().angle_rad - plain.leg().angle_rad;
+            assert!(off_rad.abs() < 1e-12, "{off_rad}");
+        }
+        is_balanced(&led);
+        let time_s = f64::from(5_000 + 320 + 3_000 + LED_TICKS + 40_000) * TICK_S;
+        assert!((led.time_s() - time_s).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_leg_that_begins_straight_and_in_motion_has_a_run_up() {
+    let motion = "kind = \"constant\"\nfrom_deg = 20\nvelocity_rad_s = 1.5";
+    let mut led = Leg::new(&Scene {
+        begins_straight: true,
+        ..scene(motion, &["drivetrain"])
+    });
+    led.set_terminals(Terminals::Driven(0.0));
+    ticks(&mut led, 2_000);
+    let (mut before_rad_s, mut reached) = (0.0, None);
+    for n in 0..60_000 {
+        ticks(&mut led, 1);
+        let Body {
+            angle_rad,
+            omega_rad_s,
+        } = led.shaft();
+        // 15 rad/s² at most, where it begins to run.
+        assert!(
+            (omega_rad_s - before_rad_s).abs() < 16.0 * TICK_S,
+            "tick {n}"
+        );
+        before_rad_s = omega_rad_s;
+        if reached.is_none() && (omega_rad_s - 1.5).abs() < 1e-9 {
+            reached = Some(angle_rad.to_degrees());
+        }
+    }
+    let reached = reached.expect("its velocity");
+    assert!((reached - 20.0).abs() < 0.01, "{reached}");
+    assert!((led.shaft().omega_rad_s - 1.5).abs() < 1e-12);
+    is_balanced(&led);
+}
+
+/// A motion from 0° is there already, and nobody leads a leg that is let go of.
+#[test]
+fn nothing_leads_where_there_is_no_way_or_nobody() {
+    let motions = [
+        ("kind = \"constant\"\nvelocity_rad_s = 0.5", &["motor"][..]),
+        (
+            "kind = \"released\"\nfrom_deg = 30",
+            &["drivetrain", "limb"][..],
+        ),
+    ];
+    for (motion, effects) in motions {
+        let plain = scene(motion, effects);
+        let mut straight = Leg::new(&Scene {
+            begins_straight: true,
+            ..plain.clone()
+        });
+        let mut plain = Leg::new(&plain);
+        ticks(&mut straight, 10_000);
+        ticks(&mut plain, 10_000);
+        assert_eq!(straight.shaft(), plain.shaft());
+        assert!(plain.shaft().omega_rad_s != 0.0);
+    }
+}
+
 const STROKES: &str =
     "kind = \"strokes\"\nfrom_deg = 20\nto_deg = 80\npeak_speed_deg_s = 60\npause_s = 0.3";
 

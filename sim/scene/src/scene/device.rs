@@ -4,11 +4,11 @@ use super::effects::Effects;
 use super::{Crepitus, Scene, SolverChoice};
 use crate::document::Section;
 use crate::error::SceneError;
-use crepitus_model::control::device_limits::LimitSettings;
+use crepitus_model::control::device_limits::{LimitSettings, RangeSettings};
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Tabled;
-use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::friction_compensation::FrictionCompensationSettings;
+use crepitus_model::render::effects::{EffectSettings, Reach, SYMPTOMS};
 use crepitus_model::render::turn_back::most_rad_per_count;
 use crepitus_model::{Convention, Parameters, Settings};
 use crepitus_plant::assembly::Listed;
@@ -81,22 +81,32 @@ pub(super) fn compensation_warning(listed: &[Listed]) -> Option<String> {
 /// The same of a scene, if it has a device.
 pub(super) fn caps_warning_of(scene: &Scene) -> Option<String> {
     let joint = scene.crepitus.as_ref().map(|c| &c.settings.parameters);
-    let most_nm = LimitSettings::default().torque_nm;
-    let warning = caps_warning(&scene.effect_settings(), joint, most_nm);
+    let (limits, range) = (LimitSettings::default(), RangeSettings::default());
+    let warning = caps_warning(&scene.effect_settings(), joint, &limits, &range);
     warning.filter(|_| scene.is_device)
 }
 
-/// That symptoms and joint can ask for more together than a device shows, if they can.
+/// Warns of symptoms and a joint that can ask for more than a device with these limits shows,
+/// anywhere in its range.
 pub fn caps_warning(
     effects: &EffectSettings,
     joint: Option<&Parameters>,
-    most_nm: f64,
+    limits: &LimitSettings,
+    range: &RangeSettings,
 ) -> Option<String> {
-    let asked_nm = effects.largest_torque_nm(joint);
-    (asked_nm > most_nm).then(|| {
+    let most_nm = limits.torque_nm;
+    let asked_nm = effects.largest_within_nm(joint, &Reach::of(range, limits));
+    if asked_nm <= most_nm {
+        return None;
+    }
+    let is_on = |place: &usize| effects.only(*place) != EffectSettings::default();
+    let symptoms = (0..SYMPTOMS.len()).filter(is_on).count();
+    let shows = format!("and the device shows {most_nm} N·m at most");
+    Some(if symptoms + usize::from(joint.is_some()) == 1 {
+        format!("the symptom can ask for {asked_nm:.1} N·m, {shows}: beyond, it does not grow")
+    } else {
         format!(
-            "the symptoms can ask for {asked_nm:.1} N·m together, and the device shows {most_nm} N·m at most: beyond, \
-             one hides the other"
+            "the symptoms can ask for {asked_nm:.1} N·m together, {shows}: beyond, one hides the other"
         )
     })
 }

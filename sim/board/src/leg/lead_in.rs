@@ -1,0 +1,214 @@
+//! From a straight leg to where a scene's motion begins.
+//!
+//! ```text
+//!    φ                                ╱ the scene's motion
+//!   from ┤                      ·─────
+//!        │                 ╱‾‾‾‾
+//!    0°  ┼───────────╱‾‾‾‾
+//!          at rest  ╎ one minimum-jerk stroke, as slow as a slow stretch
+//!                   ╎ the motor has been driven for a tenth of a second
+//! ```
+//!
+//! A device counts its angle from where its zero is set: with the leg held straight. So the leg
+//! of a simulated device waits there until the device is armed. Arming pushes the motor for
+//! 16 ms, which is no reason to begin. A motion that begins with a velocity gets a run-up of a
+//! tenth of a second, in which it grows evenly.
+
+use super::TICK_S;
+use crepitus_plant::Motion;
+use crepitus_plant::motion::{STOP_S, Strokes};
+use crepitus_plant::piece::{Curve, Piece};
+use crepitus_scene::Scene;
+
+/// Largest speed of the stroke, rad/s: 30 deg/s, V1 of the Tardieu scale, at which a muscle is
+/// stretched to find nothing.
+const SPEED_RAD_S: f64 = std::f64::consts::FRAC_PI_6;
+
+/// Ticks for which the motor is driven before: 0.1 s.
+const DRIVEN_TICKS: u32 = 2_000;
+
+/// The way to a scene's motion.
+pub(super) struct LeadIn {
+    way: Motion,
+    way_ticks: u32,
+    then: Motion,
+    stage: Stage,
+}
+
+/// What the leg does.
+#[derive(Clone, Copy)]
+enum Stage {
+    /// It rests; the motor has been driven for so many ticks without a break.
+    Waits { driven_ticks: u32 },
+    /// It is on its way, for so many ticks more.
+    Leads { ticks: u32 },
+    /// It is there.
+    Over,
+}
+
+impl LeadIn {
+    /// That of a scene whose leg begins straight. `None` where nothing leads: the motion
+    /// begins at 0°, or nobody holds the leg.
+    pub(super) fn of(scene: &Scene) -> Option<Self> {
+        let start = scene.start();
+        if !scene.begins_straight || !scene.is_held() || start.angle_rad == 0.0 {
+            return None;
+        }
+        let (way, way_ticks) = way(start.angle_rad, start.omega_rad_s);
+        Some(Self {
+            way,
+            way_ticks,
+            then: scene.endless_motion(),
+            stage: Stage::Waits { driven_ticks: 0 },
+        })
+    }
+
+    /// A tick is over, in which the motor was driven or not. Returns the motion that begins
+    /// with the next one, if another does.
+    pub(super) fn tick(&mut self, is_driven: bool) -> Option<Motion> {
+        match &mut self.stage {
+            Stage::Waits { driven_ticks } => {
+                *driven_ticks = if is_driven { *driven_ticks + 1 } else { 0 };
+                if *driven_ticks < DRIVEN_TICKS {
+                    return None;
+                }
+                self.stage = Stage::Leads {
+                    ticks: self.way_ticks,
+                };
+                Some(self.way.clone())
+            }
+            Stage::Leads { ticks } => {
+                *ticks -= 1;
+                if *ticks > 0 {
+                    return None;
+                }
+                self.stage = Stage::Over;
+                Some(self.then.clone())
+            }
+            Stage::Over => None,
+        }
+    }
+}
+
+/// The motion from rest at 0° to an angle that is reached with a velocity, and its length in ticks.
+fn way(angle_rad: f64, omega_rad_s: f64) -> (Motion, u32) {
+    let run_up_s = if omega_rad_s == 0.0 { 0.0 } else { STOP_S };
+    let before_rad = angle_rad - 0.5 * omega_rad_s * run_up_s;
+    let stroke = Strokes {
+        from_rad: 0.0,
+        to_rad: before_rad,
+        peak_speed_rad_s: SPEED_RAD_S,
+        pause_s: 0.0,
+    };
+    let stroke_ticks = whole_ticks(stroke.stroke_s());
+    let stroke_s = f64::from(stroke_ticks) * TICK_S;
+    // φ = Δ·(10σ³ − 15σ⁴ + 6σ⁵), as a stroke of a scene, but for whole ticks.
+    let cube = stroke_s * stroke_s * stroke_s;
+    let piece = |start_s: f64, end_s: f64, polynomial: [f64; 6]| Piece {
+        start_s,
+        end_s,
+        jump: false,
+        curve: Curve::Polynomial(polynomial),
+    };
+    let mut pieces = vec![piece(
+        0.0,
+        stroke_s,
+        [
+            0.0,
+            0.0,
+            0.0,
+            10.0 * before_rad / cube,
+            -15.0 * before_rad / (cube * stroke_s),
+            6.0 * before_rad / (cube * stroke_s * stroke_s),
+        ],
+    )];
+    let mut ticks = stroke_ticks;
+    if run_up_s > 0.0 {
+        ticks += whole_ticks(run_up_s);
+        let end_s = f64::from(ticks) * TICK_S;
+        let half_slope = 0.5 * omega_rad_s / run_up_s;
+        let polynomial = [before_rad, 0.0, half_slope, 0.0, 0.0, 0.0];
+        pieces.push(piece(stroke_s, end_s, polynomial));
+    }
+    let end_s = f64::from(ticks) * TICK_S;
+    let straight_on = [angle_rad, omega_rad_s, 0.0, 0.0, 0.0, 0.0];
+    pieces.push(piece(end_s, f64::INFINITY, straight_on));
+    (Motion::Sequence(pieces), ticks)
+}
+
+/// The ticks in which a time is over, at least one.
+fn whole_ticks(seconds: f64) -> u32 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a cast from float saturates, and no time is negative"
+    )]
+    let ticks = (seconds / TICK_S - 1e-6).ceil() as u32;
+    ticks.max(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Angle and velocity at every tick.
+    fn states(motion: &Motion, ticks: u32) -> Vec<(f64, f64)> {
+        (0..=ticks)
+            .map(|n| {
+                let state = motion.at(f64::from(n) * TICK_S);
+                (state.phi_rad, state.omega_rad_s)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_way_is_slow_and_ends_as_the_motion_begins() {
+        for (deg, omega) in [
+            (60.0, 0.0),
+            (-4.0, 0.0),
+            (1e-9, 0.0),
+            (50.0, 0.1),
+            (5.0, -3.0),
+        ] {
+            let angle_rad = f64::to_radians(deg);
+            let (motion, ticks) = way(angle_rad, omega);
+            let states = states(&motion, ticks);
+            assert_eq!(states[0], (0.0, 0.0));
+            let (end_rad, end_rad_s) = states[states.len() - 1];
+            assert!((end_rad - angle_rad).abs() < 1e-12, "{deg}: {end_rad}");
+            assert!((end_rad_s - omega).abs() < 1e-12, "{deg}: {end_rad_s}");
+            let fastest = states.iter().fold(0.0_f64, |most, s| most.max(s.1.abs()));
+            assert!(fastest <= SPEED_RAD_S.max(omega.abs()) + 1e-9, "{fastest}");
+            // Angle and velocity go on over the ends of pieces.
+            for pair in states.windows(2) {
+                let mean = 0.5 * (pair[0].1 + pair[1].1);
+                let off_rad = pair[1].0 - pair[0].0 - mean * TICK_S;
+                assert!(off_rad.abs() < 1e-8, "{deg}: {pair:?}");
+            }
+        }
+        // 60° at 30 deg/s at most: 15/8 of the mean.
+        assert_eq!(way(f64::to_radians(60.0), 0.0).1, 75_000);
+    }
+
+    #[test]
+    fn a_motor_that_is_pushed_is_no_reason_to_begin() {
+        let (way, way_ticks) = way(1.0, 0.0);
+        let mut lead_in = LeadIn {
+            way,
+            way_ticks,
+            then: Motion::rest(1.0),
+            stage: Stage::Waits { driven_ticks: 0 },
+        };
+        for n in 0..3 * DRIVEN_TICKS {
+            // Driven for all but one of as many ticks as it takes.
+            assert_eq!(lead_in.tick(n % DRIVEN_TICKS != 7), None);
+        }
+        let begun = (0..=DRIVEN_TICKS).find_map(|_| lead_in.tick(true));
+        assert_eq!(begun, Some(lead_in.way.clone()));
+        for _ in 1..way_ticks {
+            assert_eq!(lead_in.tick(false), None);
+        }
+        assert_eq!(lead_in.tick(true), Some(Motion::rest(1.0)));
+        assert_eq!(lead_in.tick(true), None);
+    }
+}
