@@ -6,6 +6,8 @@
 //! they are the short polynomials of [`single`], because `libm`'s f32 sine
 //! computes in f64, which a Cortex-M4F does in software.
 
+#[cfg(test)]
+pub(crate) mod counted;
 mod double;
 pub mod single;
 mod square_root;
