@@ -93,7 +93,7 @@ fn search<F: Real, P: Propagate<F>, V: VelocityShape<F>>(
     length_s: F,
     bound: F,
 ) -> Option<F> {
-    let rounding = F::TWO * F::TWO * F::EPSILON;
+    let rounding = F::from_f64(4.0) * F::EPSILON;
     let mut time_s = F::ZERO;
     let (mut x, mut v) = (slip.x, slip.v);
     for _ in 0..SEARCH_STEPS {
