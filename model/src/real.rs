@@ -6,6 +6,8 @@
 //! they are the short polynomials of [`single`], because `libm`'s f32 sine
 //! computes in f64, which a Cortex-M4F does in software.
 
+#[cfg(test)]
+pub(crate) mod counted;
 mod double;
 pub mod single;
 mod square_root;
@@ -102,14 +104,15 @@ pub trait Real:
         }
     }
 
-    /// The larger of two; a NaN on the right is ignored.
+    /// The larger of two, and `self` of two that are equal: −0 stays −0. A NaN on the right is
+    /// ignored.
     #[inline]
     #[must_use]
     fn at_least(self, low: Self) -> Self {
         if low > self { low } else { self }
     }
 
-    /// The smaller of two; a NaN on the right is ignored.
+    /// The smaller of two, and `self` of two that are equal. A NaN on the right is ignored.
     #[inline]
     #[must_use]
     fn at_most(self, high: Self) -> Self {
@@ -159,6 +162,12 @@ mod tests {
             (F::ONE.at_least(nan), F::ONE.at_most(nan)),
             (F::ONE, F::ONE)
         );
+        // Of two zeros the left one.
+        for zero in [0.0_f64, -0.0] {
+            let of = |x: F| x.to_f64().to_bits();
+            assert_eq!(of(f(zero).at_least(f(-zero))), zero.to_bits());
+            assert_eq!(of(f(zero).at_most(f(-zero))), zero.to_bits());
+        }
         assert_eq!(F::ONE + F::EPSILON * F::HALF, F::ONE);
         assert!(F::ONE + F::EPSILON > F::ONE);
         assert_eq!((F::AT_REST * F::HALF).settled(), F::ZERO);

@@ -251,6 +251,7 @@ fn series<F: Real, const N: usize>(z: F, ratios: &[f64; N]) -> F {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::real::counted::{Counted, operations};
 
     fn with(damping_ratio: f64) -> (Parameters, Oscillator<f64>) {
         let mut p = Parameters::default();
@@ -318,6 +319,23 @@ mod tests {
         assert!((a.xx - b.xx).abs() < 1e-6 && (a.xv - b.xv).abs() < 1e-8);
         let (s, c) = libm::sincos(below * 200.0);
         assert!((a.xx + 1.0 - c).abs() < 3e-16 && (a.xv * 200.0 - s).abs() < 3e-16);
+    }
+
+    /// By the series, where the short way is as exact, and by sine and cosine.
+    #[test]
+    fn without_damping_nothing_is_computed_for_it() {
+        let [free, damped] = [0.0, 0.02].map(|ratio| Oscillator::<Counted>::of(&with(ratio).0));
+        for time_s in [1e-3, 2e-2] {
+            let time = Counted::from_f64(time_s);
+            let [without, with] = [free, damped].map(|o| operations(|| o.transition(time)).1);
+            assert!(without.all() < with.all(), "{time_s}: {without:?} {with:?}");
+        }
+        let time = Counted::from_f64(1e-3);
+        let (x, v) = (Counted::from_f64(1e-3), Counted::from_f64(0.7));
+        let (moved, short) = operations(|| free.moved(x, v, time));
+        let (by_transition, long) = operations(|| free.transition(time).apply(x, v));
+        assert_eq!(moved, by_transition);
+        assert!(short.all() < long.all(), "{short:?} {long:?}");
     }
 
     #[test]

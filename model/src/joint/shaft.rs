@@ -174,7 +174,7 @@ impl<F: Real> VelocityShape<F> for Quadratic<F> {
         let chord = F::HALF * (from + to) * coefficients.step_s;
         let beside = step.delta_phi_rad - chord;
         // Less than the rounding of an angle of 4 rad is no bend.
-        let bend = if beside.abs() <= F::TWO * F::TWO * F::EPSILON {
+        let bend = if beside.abs() <= F::from_f64(4.0) * F::EPSILON {
             F::ZERO
         } else {
             F::from_f64(6.0) * beside * coefficients.per_step
@@ -253,6 +253,26 @@ mod tests {
             // Ω̈ = 3 rad/s³, as of a hand's sine: −h³·Ω̈/12.
             let bent = path(phi, -3.1e-14);
             assert!((bent.shape().omega_ddot / 3.0 - 1.0).abs() < 0.1, "{phi}");
+        }
+    }
+
+    /// Both angles of a step are rounded, and each as it likes.
+    #[test]
+    fn a_straight_motion_of_a_knee_stays_straight_to_the_bit() {
+        let step_s = 5e-5;
+        let coefficients =
+            StepCoefficients::<f64>::new(&Settings::default().validate().unwrap(), step_s).unwrap();
+        // From 0 to 4 rad at 1 rad/s.
+        for tick in 0..79_999 {
+            let [from_rad, to_rad] = [tick, tick + 1].map(|tick| f64::from(tick) * step_s);
+            let step = ShaftStep {
+                delta_phi_rad: to_rad - from_rad,
+                omega_start_rad_s: 1.0,
+                omega_end_rad_s: 1.0,
+            };
+            let path = ShaftPath::<f64, Quadratic<f64>>::new(&step, &coefficients);
+            assert_eq!(path.omega_dot(0.0), 0.0, "{from_rad} rad");
+            assert_eq!(path.shape().omega_ddot, 0.0, "{from_rad} rad");
         }
     }
 

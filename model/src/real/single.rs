@@ -196,7 +196,7 @@ impl Real for f32 {
             return u64::MAX;
         }
         let low = (self - high as f32 * WORD) as u32;
-        u64::from(high) << 32 | u64::from(low)
+        (u64::from(high) << 32) + u64::from(low)
     }
 
     #[inline]

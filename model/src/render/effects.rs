@@ -531,6 +531,7 @@ pub(crate) mod tests {
         let law: FrictionCompensation<f32> = law(&FrictionCompensationSettings::defaults());
         note(Some(&law), 0.3, &mut shown);
         assert_eq!(shown, Shown::nothing());
+        assert_eq!(DeviceEffect::<f32>::phase(&law), 0);
     }
 
     #[test]

@@ -240,7 +240,16 @@ mod tests {
     #[test]
     fn what_a_shaft_can_make_passes_as_it_is() {
         let mut check = check();
-        for (travel, from, to) in [(5e-5, 1.0, 1.0), (-4.9e-3, 49.0, 40.0), (0.0, -50.0, -50.0)] {
+        // Also the most of each: 2·50 rad/s·h, 50 rad/s, and 10 rad/s of change.
+        let most = 100.0 * TICK_S;
+        for (travel, from, to) in [
+            (5e-5, 1.0, 1.0),
+            (-4.9e-3, 49.0, 40.0),
+            (0.0, -50.0, -50.0),
+            (most, 1.0, 1.0),
+            (-most, 1.0, 1.0),
+            (0.0, -6.0, 4.0),
+        ] {
             let Sample::Taken(step) = moved(travel, from, to) else {
                 unreachable!()
             };

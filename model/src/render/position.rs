@@ -255,7 +255,7 @@ impl<F: Real> Travel<F> {
 /// The share f of a tick, 0 to 1, at which a quantity that begins `missing` ≥ 0
 /// below its threshold and rises by `slope`·f + `bend`·f² has reached it.
 pub fn rise<F: Real>(slope: F, bend: F, missing: F) -> F {
-    let four = F::TWO * F::TWO;
+    let four = F::from_f64(4.0);
     let square = slope * slope + four * bend * missing;
     let sum = slope + square.at_least(F::ZERO).sqrt();
     if sum > F::ZERO {
@@ -436,6 +436,7 @@ pub(crate) mod tests {
         assert!((rise(1.0, 1.0, 0.75) - 0.5).abs() < 1e-15);
         // It turns before: never later than the end.
         assert_eq!(rise(0.0, 0.0, 1.0), 1.0);
+        assert_eq!(rise(0.0, 0.0, 0.0), 1.0);
         assert_eq!(rise(-1.0, 0.0, 1.0), 1.0);
         assert_eq!(rise(1.0, -9.0, 1.0), 1.0);
         assert_eq!(rise(1.0, 0.0, -1.0), 0.0);

@@ -403,3 +403,32 @@ impl<F: Real, L: Locate<F, Shape = Linear>> StickSlip<F> for Frozen<F, L> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Settings;
+    use crate::real::counted::{Counted, Operations, operations};
+    use crate::solver::locate::ExactEvents;
+
+    /// 1 rad/s: a stick of 20 steps, a slip of 608.
+    #[test]
+    fn a_step_inside_a_slip_computes_nothing() {
+        let f = Counted::from_f64;
+        let settings = Settings::default().validate().unwrap();
+        let coefficients = StepCoefficients::new(&settings, 5e-5).unwrap();
+        let mut joint = Frozen::<Counted, ExactEvents>::new(coefficients, f(1.0));
+        let shaft = ShaftStep {
+            delta_phi_rad: f(5e-5),
+            omega_start_rad_s: f(1.0),
+            omega_end_rad_s: f(1.0),
+        };
+        let mut step = || operations(|| joint.step(&shaft, |_| {})).1;
+        let before: u32 = (0..25).map(|_| step().slow).sum();
+        assert!(before > 0, "a break and a slip's end are computed");
+        for n in 0..500 {
+            assert_eq!(step(), Operations::default(), "{n}");
+        }
+        assert_eq!(joint.phase(), Phase::Slip(Sense::Positive));
+    }
+}

@@ -207,6 +207,28 @@ mod tests {
         assert!((later.at(0.25) - path.at(0.75)).abs() < 1e-15);
     }
 
+    #[test]
+    fn the_shaft_overtakes_the_object_with_what_it_is_faster() {
+        let oscillator = Oscillator::<f64>::of(&crate::Parameters::default());
+        for sense in [Sense::Positive, Sense::Negative] {
+            let slip = SlipPath {
+                propagator: &NoMotion,
+                oscillator: &oscillator,
+                sense,
+                x: 0.0,
+                v: 0.0,
+                omega: 2.0,
+                omega_dot: -3.0,
+                shape: Quadratic { omega_ddot: 12.0 },
+            };
+            // Ω = 2 − 3u + 12u²/2 rad/s.
+            for (time_s, omega) in [(0.0, 2.0), (0.5, 2.0), (0.25, 1.625), (1.5, 11.0)] {
+                let found = slip.overtaking(time_s, 0.5);
+                assert_eq!(found, sense.of_signed(omega - 0.5), "{sense:?} {time_s}");
+            }
+        }
+    }
+
     /// A stretch on which the shaft keeps `omega` and the object goes from `v`
     /// to `v_end`: has it been fallen back to?
     fn met(omega: f64, v: f64, v_end: f64) -> [bool; 2] {

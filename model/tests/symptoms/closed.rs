@@ -2,7 +2,6 @@
 
 use super::rig::*;
 
-use crepitus_model::Real;
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::clasp_knife::ClaspKnifeSettings;
 use crepitus_model::render::effects::clonus::ClonusSettings;
@@ -12,6 +11,7 @@ use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_model::render::effects::symptom::Word;
 use crepitus_model::render::effects::texture::TextureSettings;
+use crepitus_model::{Real, Sample};
 
 #[test]
 fn cogwheel_has_its_mean_and_its_height() {
@@ -356,5 +356,39 @@ fn asperities_go_on_below_zero_and_each_lets_go_of_its_height() {
         for (nth, time_s) in snaps.iter().enumerate() {
             near(*time_s, (0.8 + 1.5 * nth as f64) / 20.0, 1e-9);
         }
+    }
+}
+
+/// What a muscle is told over a gap comes as late as anything: nothing of it is lost.
+#[test]
+fn a_gap_leaves_a_reflex_as_late_as_it_is() {
+    let settings = EffectSettings {
+        spasticity: Some(SpasticitySettings {
+            form: 1,
+            threshold_deg: 20.0,
+            gain_nm_per_rad: 10.0,
+            ..SpasticitySettings::default()
+        }),
+        ..EffectSettings::default()
+    };
+    let motion = ramp(5.0, 40.0);
+    let at = |tick: u32| motion(f64::from(tick) * TICK_S);
+    let mut whole = only::<f64>(settings, 5.0);
+    let mut gaps = only::<f64>(settings, 5.0);
+    // Two ticks without a sample, and ten; the delay is of a thousand.
+    let mut seen = 0;
+    for tick in 0..12_000 {
+        let nm = whole.step(at(tick), at(tick + 1), at(tick + 1).0 - at(tick).0);
+        if (9_000..9_002).contains(&tick) || (11_000..11_010).contains(&tick) {
+            let place = gaps.timing.sight.position(at(seen).0);
+            gaps.tick(Sample::Lost, place);
+            continue;
+        }
+        let seen_nm = gaps.step(at(seen), at(tick + 1), at(tick + 1).0 - at(seen).0);
+        seen = tick + 1;
+        // Over a gap it is told what it is as the gap ends: 0.35 mN·m a tick more, for two ticks
+        // of the 200 in which the muscle follows.
+        near(seen_nm, nm, 1e-5);
+        assert!(tick < 9_000 || nm > 0.5, "{nm}");
     }
 }

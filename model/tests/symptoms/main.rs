@@ -14,6 +14,7 @@ mod support;
 
 mod asperities;
 mod closed;
+mod decays;
 mod gaps;
 mod laws;
 mod ledger;
@@ -24,3 +25,4 @@ mod random;
 mod reset;
 mod rig;
 mod rules;
+mod thresholds;

@@ -81,12 +81,7 @@ impl<F: Real, E> Faded<F, E> {
     /// memory in every tick.
     #[cold]
     fn fade(&mut self) -> F {
-        let left_nm = (self.fading_nm.abs() - self.slew_nm).at_least(F::ZERO);
-        self.fading_nm = if self.fading_nm < F::ZERO {
-            -left_nm
-        } else {
-            left_nm
-        };
+        self.fading_nm -= self.fading_nm.within(self.slew_nm);
         self.fading_nm
     }
 }

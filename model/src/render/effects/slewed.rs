@@ -102,6 +102,15 @@ mod tests {
     }
 
     #[test]
+    fn a_step_as_large_as_the_slew_limit_is_not_limited() {
+        let (whole_nm, _) = after(&mut slewed(2.0), 1.0, 0.0);
+        for (slew_nm, limit) in [(-whole_nm, Limit::None), (-whole_nm.next_up(), Limit::Slew)] {
+            let (added_nm, shown) = after(&mut slewed(slew_nm), 1.0, 0.0);
+            assert_eq!((added_nm, shown.limit), (-slew_nm, limit));
+        }
+    }
+
+    #[test]
     fn a_reason_from_before_is_not_replaced_by_the_slew_limit() {
         let mut stage = slewed(0.1);
         let mut shown = Shown {

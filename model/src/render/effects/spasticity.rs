@@ -389,8 +389,12 @@ impl<F: Real> Law for Spasticity<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::position::Sight;
+    use crate::joint::ShaftStep;
+    use crate::real::counted::{Counted, operations};
+    use crate::render::effects::tests::TIMING;
+    use crate::render::input_check::Checked;
     use crate::render::position::tests::travel;
+    use crate::render::position::{Scale, Sight};
 
     #[test]
     fn a_level_is_met_where_angle_and_velocity_make_it() {
@@ -423,6 +427,37 @@ mod tests {
                     assert!((found - fraction).abs() < 1e-6, "{found} {fraction}");
                 }
                 assert_eq!(threshold.rises_to(start, start, &travel), 0.0);
+            }
+        }
+    }
+
+    /// Two velocities tell a muscle that waits that it goes on to wait.
+    #[test]
+    fn a_slow_stretch_is_passed_over_before_anything_is_located() {
+        let f = Counted::from_f64;
+        for muscles in [0, 1] {
+            let settings = SpasticitySettings {
+                muscles,
+                ..SpasticitySettings::default()
+            };
+            let coefficients = Spasticity::<Counted>::coefficients(&settings, &TIMING).unwrap();
+            let mut law = <Spasticity<Counted> as Law>::new(coefficients);
+            // 40 deg/s are 0.7 rad/s.
+            let mut cost = |rad_s: f64| {
+                let shaft = ShaftStep {
+                    delta_phi_rad: f(rad_s * TIMING.step_s),
+                    omega_start_rad_s: f(rad_s),
+                    omega_end_rad_s: f(rad_s),
+                };
+                let to = Sight::IDEAL.position(1.0);
+                let scale = Scale::new(&Sight::IDEAL, TIMING.step_s);
+                let travel = Travel::of(&Checked::Step(shaft), &to, &scale).unwrap();
+                operations(|| law.follow(&travel, &mut ())).1.all()
+            };
+            // The torque, which is none, has a sign, too.
+            for rad_s in [-0.5, 0.0, 0.5] {
+                let done = cost(rad_s);
+                assert!(done <= 4, "{rad_s} rad/s: {done}");
             }
         }
     }

@@ -324,3 +324,21 @@ pub(super) fn law_nm<L: Law>(
 pub(super) fn sense<F: Real>(muscles: u8) -> F {
     if muscles == 0 { F::ONE } else { -F::ONE }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whose share shows in no torque is located in f64, or if somebody asks.
+    fn located<F: Real>() -> [f64; 2] {
+        let listener = |_: Change<F>| {};
+        let half = || F::HALF;
+        [Hear::<F>::when(&(), half), Hear::<F>::when(&listener, half)].map(F::to_f64)
+    }
+
+    #[test]
+    fn a_time_that_nobody_needs_is_not_found() {
+        assert_eq!(located::<f64>(), [0.5, 0.5]);
+        assert_eq!(located::<f32>(), [0.0, 0.5]);
+    }
+}

@@ -102,6 +102,7 @@ mod tests {
     use crate::render::effects::range_limit::RangeLimitSettings;
     use crate::render::effects::spasticity::SpasticitySettings;
     use crate::render::effects::texture::TextureSettings;
+    use crate::render::effects::vibration_actuator::VibrationActuatorSettings;
 
     /// The stiffest that the presets ask for at once: 400 + 400 + 200 + 76.
     fn stiff() -> EffectSettings {
@@ -157,6 +158,39 @@ mod tests {
         assert_eq!(EffectSettings::default().check(Some(&stiffer)), Ok(()));
         let nm = settings.largest_torque_nm(Some(&joint));
         assert!((nm - (0.4 + 4.0 + 2.0 + 0.4)).abs() < 1e-12, "{nm}");
+        // The limit itself is allowed: a wall of 1000 N·m/rad, and a texture of 200.
+        let most = EffectSettings {
+            range_limit: Some(RangeLimitSettings {
+                flexion_stiffness_nm_per_rad: 500.0,
+                flexion_stiffening_nm_per_rad2: 0.0,
+                flexion_loss: 0.5,
+                ..RangeLimitSettings::default()
+            }),
+            texture: Some(TextureSettings::default()),
+            ..EffectSettings::default()
+        };
+        assert_eq!(most.stiffness_nm_per_rad(None), MOST_STIFFNESS_NM_PER_RAD);
+        assert_eq!(most.check(None), Ok(()));
+    }
+
+    #[test]
+    fn ringing_of_an_actuator_needs_one() {
+        let bone = |output, vibration_actuator| {
+            let settings = EffectSettings {
+                bone_shaping: Some(BoneShapingSettings {
+                    output,
+                    ..BoneShapingSettings::default()
+                }),
+                vibration_actuator,
+                ..EffectSettings::default()
+            };
+            // A knee is one on any brace.
+            assert_eq!(settings.check_knee(None), Ok(()));
+            settings.check(None).is_ok()
+        };
+        let actuator = Some(VibrationActuatorSettings::default());
+        assert!(bone(0, None) && bone(0, actuator) && bone(1, actuator));
+        assert!(!bone(1, None));
     }
 
     #[test]
@@ -267,6 +301,7 @@ mod tests {
         assert!(wall(401.0, 0.0).check(None).is_err());
         assert_eq!(wall(600.0, 0.1).check(None), Ok(()));
         assert_eq!(wall(600.0, 0.39).check(None), Ok(()));
+        assert_eq!(wall(500.0, 0.5).check(None), Ok(()));
         assert!(wall(600.0, 0.41).check(None).is_err());
     }
 }

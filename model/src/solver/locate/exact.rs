@@ -93,7 +93,7 @@ fn search<F: Real, P: Propagate<F>, V: VelocityShape<F>>(
     length_s: F,
     bound: F,
 ) -> Option<F> {
-    let rounding = F::TWO * F::TWO * F::EPSILON;
+    let rounding = F::from_f64(4.0) * F::EPSILON;
     let mut time_s = F::ZERO;
     let (mut x, mut v) = (slip.x, slip.v);
     for _ in 0..SEARCH_STEPS {
@@ -149,6 +149,7 @@ fn search<F: Real, P: Propagate<F>, V: VelocityShape<F>>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::real::counted::{Counted, operations};
     use crate::solver::propagate::Exact;
     use crate::{Settings, StepCoefficients};
 
@@ -272,5 +273,54 @@ mod tests {
         // A near miss is a miss.
         assert_eq!(meets(8.1e-4, -8.0, 1e-3), None);
         assert_eq!(meets(8.1e-6, -0.8, 1e-4), None);
+    }
+
+    /// What most ticks in stick are.
+    #[test]
+    fn a_stick_that_cannot_reach_its_limit_costs_no_root() {
+        let f = Counted::from_f64;
+        let (rate, curvature, length_s) = (1.0, 100.0, 1e-3);
+        let gains_nm = (rate + 0.5 * curvature * length_s) * length_s;
+        for sense in [Sense::Positive, Sense::Negative] {
+            let path = StickPath {
+                torque_nm: f(sense.of_signed(0.5 - 2.02 * gains_nm)),
+                rate: f(sense.of_signed(rate)),
+                curvature: f(sense.of_signed(curvature)),
+                shape: Linear,
+            };
+            let (found, done) =
+                operations(|| ExactEvents::break_time(&path, sense, f(0.5), f(length_s)));
+            assert_eq!((found, done.slow), (None, 0), "{sense:?}");
+        }
+    }
+
+    /// And most in a slip: velocities that are further apart than what lies between can bend.
+    #[test]
+    fn a_slip_that_cannot_meet_costs_no_trial_point() {
+        let f = Counted::from_f64;
+        let settings = Settings::default().validate().unwrap();
+        let coefficients = StepCoefficients::<Counted>::new(&settings, 1e-3).unwrap();
+        let propagator = Exact::new(&coefficients);
+        let cost = |start: f64, end: f64| {
+            let slip = SlipPath {
+                propagator: &propagator,
+                oscillator: &coefficients.oscillator,
+                sense: Sense::Positive,
+                x: f(0.0),
+                v: f(1.0),
+                omega: f(1.0 + start),
+                omega_dot: f(0.0),
+                shape: Linear,
+            };
+            let v_end = f(1.0 + start - end);
+            let (found, done) = operations(|| ExactEvents::match_time(&slip, f(1e-3), v_end));
+            assert_eq!(found, None, "{start} {end}");
+            done.slow
+        };
+        // |v̈| ≤ (200 rad/s)²·1 rad/s, so at most 4e4·h²/8 = 5 mrad/s below the chord.
+        let (above, below) = (5.05e-3, 4.95e-3);
+        assert_eq!(cost(above, above), 0);
+        assert!(cost(below, below) > 0);
+        assert!(cost(above, below) > 0 && cost(below, above) > 0);
     }
 }

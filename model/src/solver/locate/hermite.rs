@@ -100,7 +100,7 @@ fn first_reach<F: Real>(path: &StickPath<F, Quadratic<F>>, limit_nm: F, length_s
 fn way_back<F: Real>(path: &StickPath<F, Quadratic<F>>) -> Option<F> {
     let square = F::from_f64(1.0 / 6.0) * path.shape.omega_ddot;
     let line = F::HALF * path.curvature;
-    let discriminant = line * line - F::TWO * F::TWO * square * path.rate;
+    let discriminant = line * line - F::from_f64(4.0) * square * path.rate;
     if discriminant < F::ZERO || (square <= F::ZERO && line <= F::ZERO) {
         return None;
     }

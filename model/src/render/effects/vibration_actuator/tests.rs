@@ -50,6 +50,12 @@ fn settings_are_their_table_and_are_held_to_it() {
         light.check(),
         Err(SettingsError::Contradiction { .. })
     ));
+    // Nothing but the back-EMF may damp it.
+    let electric = VibrationActuatorSettings {
+        damping_ratio: s.electric_damping_ratio(),
+        ..s
+    };
+    assert_eq!(electric.check(), Ok(()));
     for step_s in [0.0, f64::NAN, 1.1] {
         let timing = Timing { step_s, ..TIMING };
         assert!(VibrationActuator::<f32>::coefficients(&s, &timing).is_err());
@@ -97,6 +103,39 @@ fn each_filter_answers_a_step_as_its_closed_form() {
             assert!(single < 1e-6, "{corner_hz} {two_zeta}: {single:e}");
         }
     }
+}
+
+/// Up to a limit, and up to where reductions begin, a command is what was wanted.
+#[test]
+fn a_command_is_reduced_beyond_a_limit_and_not_at_it() {
+    let law = faded_in::<f64>(&VibrationActuatorSettings::default());
+    let limited = |change: fn(&mut VibrationActuator<f64>), wanted_v: f64| {
+        let mut law = law;
+        change(&mut law);
+        let volts = law.limited(wanted_v);
+        (volts / wanted_v, law.phase)
+    };
+    // The supply: 5 V.
+    for volts in [5.0, -5.0] {
+        assert_eq!(limited(|_| (), volts), (1.0, ACTING));
+        let (share, phase) = limited(|_| (), 1.25 * volts);
+        assert_eq!((share, phase), (0.8, VOLTAGE));
+    }
+    // Heat: all up to 0.8 of what may last, half at 0.9, nothing at it.
+    assert_eq!(limited(|law| law.heat = BEGINS_AT, 1.0), (1.0, ACTING));
+    let (share, phase) = limited(|law| law.heat = 0.9, 1.0);
+    assert!((share - 0.5).abs() < 1e-12 && phase == HEAT, "{share}");
+    assert_eq!(limited(|law| law.heat = 1.0, 1.0), (0.0, HEAT));
+    // A mass that turns is driven no further out, and one that returns is not held.
+    let out = |law: &mut VibrationActuator<f64>| law.excursion = 0.9;
+    assert_eq!(limited(out, 1.0), (1.0, ACTING));
+    let moves = |law: &mut VibrationActuator<f64>| {
+        (law.excursion, law.excursion_rate) = (0.9, 1e-9);
+    };
+    assert_eq!(limited(moves, -1.0), (1.0, ACTING));
+    let (share, phase) = limited(moves, 1.0);
+    assert!((share - 0.19 / 0.36).abs() < 1e-12, "{share}");
+    assert_eq!(phase, EXCURSION);
 }
 
 /// Complex numbers, as far as needed.
