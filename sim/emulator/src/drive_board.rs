@@ -181,6 +181,9 @@ impl<C: CommsSide> DriveBoard<C> {
         if was_synchronised && self.is_synchronised {
             let turned = self.leg.count().wrapping_sub(before);
             self.check_wiring(turned, counter);
+        } else {
+            // Those of the half in which it becomes so are not those of a whole tick.
+            self.mcu.take_samplings();
         }
         self.is_second = !self.is_second;
     }

@@ -222,6 +222,12 @@ impl Run {
                 stage.work_j += stage.added_nm * turned;
             }
             self.device.tick(time_s, &before, &after, &mut events);
+            // As a row, an event holds numbers.
+            if !events.is_empty()
+                && let Some(diverged) = self.diverged(scene, time_s)
+            {
+                return Err(RunError::Diverged(diverged));
+            }
             tell(&mut events, watch)?;
             time_s = walk.time_s();
         }
