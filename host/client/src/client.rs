@@ -101,6 +101,9 @@ pub(crate) struct Counts {
 /// Samples that are always under way, at most: 100 ms of them.
 const UNDER_WAY: u64 = 2_000;
 
+/// As long as they take.
+const SHORT_SILENCE: Duration = Duration::from_millis(100);
+
 /// Telemetry that had stopped while the device went on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unheard {
@@ -235,17 +238,22 @@ impl<T: Transport> Client<T> {
     /// What the device has produced and nobody has heard, if that is more than what is always under way.
     /// A program that passes everything on may hang while the device goes on.
     pub fn unheard(&mut self) -> Option<Unheard> {
-        let next_tick = self.accounting()?.next_tick();
+        self.accounting()?;
         if !self.telemetry.is_subscribed {
             return None;
         }
-        let silence = self.now().saturating_sub(self.telemetry.heard_at);
         let status = if self.is_connected() {
             self.status().ok()
         } else {
             None
         };
+        // With what came before the answer. A slow link lags, and loses much, but is not silent.
+        let silence = self.now().saturating_sub(self.telemetry.heard_at);
+        let next_tick = self.accounting()?.next_tick();
         let samples = status.map(|status| status.tick.saturating_sub(next_tick));
+        if samples.is_some() && silence < SHORT_SILENCE {
+            return None;
+        }
         (samples.is_none_or(|samples| samples > UNDER_WAY)).then_some(Unheard { silence, samples })
     }
 
