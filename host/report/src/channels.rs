@@ -143,8 +143,8 @@ impl Channels {
         }
     }
 
-    /// Whether a row says that the object is off: its phase has no value, in a column from
-    /// which on values may be lacking.
+    /// Whether crepitus is off in a row: its phase is NaN, and the column is one of those, from
+    /// `may_lack_from` on, in which NaN means "no value".
     pub(crate) fn is_off(&self, row: &[f64], may_lack_from: usize) -> bool {
         let phase = self.phase.filter(|place| *place >= may_lack_from);
         let phase = phase.and_then(|place| row.get(place));

@@ -118,7 +118,7 @@ impl Window {
         }
     }
 
-    /// Whether the object was off in the last row.
+    /// Whether crepitus was off in the last row.
     fn is_off(&self) -> bool {
         self.changes
             .last()
