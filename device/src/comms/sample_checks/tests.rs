@@ -102,6 +102,18 @@ fn torque_that_the_model_does_not_give_is_a_fault() {
     }
 }
 
+/// One set's symptoms fade while the other's begin.
+#[test]
+fn while_parameters_change_torques_of_both_sets_add_up() {
+    let rough = bounds_with(&[("crepitus.static_torque_nm", 1.0)]);
+    let both = bounds().or(rough);
+    let found = |bounds, nm| blocks_within(&bounds, |_| energised(nm), State::Armed);
+    let beyond = Some((Fault::TorqueBeyondBounds, 1));
+    assert_eq!(found(both, 1.39), None);
+    assert_eq!(found(both, 1.41), beyond);
+    assert_eq!(found(rough, 1.01), beyond);
+}
+
 #[test]
 fn too_much_of_anything_is_a_fault() {
     let over = |_| Sample {

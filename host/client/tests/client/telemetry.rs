@@ -131,6 +131,21 @@ fn a_slow_host_gets_the_count_of_lost_samples() {
     assert_eq!(accounting.gap_count(), 1);
 }
 
+/// What it hears is old, and what the device dropped since then is in no block yet.
+#[test]
+fn a_link_that_lags_is_not_one_that_has_stopped() {
+    let (shared, mut client) = connected();
+    client.subscribe().unwrap();
+    shared.borrow_mut().room = 4_096;
+    pump_for(&mut client, ms(100));
+    client.transport_mut().wait(ms(500));
+    assert_eq!(client.unheard(), None);
+    client.transport_mut().wait(ms(200));
+    shared.borrow_mut().link_is_cut = true;
+    pump_for(&mut client, ms(200));
+    assert!(client.unheard().is_some(), "nothing is heard any more");
+}
+
 #[test]
 fn the_link_between_the_controllers_may_lose_some_too() {
     let (shared, mut client) = connected();
