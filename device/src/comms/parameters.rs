@@ -18,7 +18,9 @@ pub struct Parameters {
     bounds: Bounds,
     /// Bounds of all values that may still be in force.
     wide_bounds: Bounds,
-    /// Blocks in a row with the committed values in force, and no ramp.
+    /// Blocks in a row with the committed values in force, and those of them without a ramp
+    /// since the last one that had one.
+    in_force_blocks: u32,
     settled_blocks: u32,
 }
 
@@ -39,6 +41,7 @@ impl Parameters {
             saved: saved.map(|(revision, _)| revision),
             bounds,
             wide_bounds: bounds,
+            in_force_blocks: 0,
             settled_blocks: 0,
         }
     }
@@ -76,7 +79,7 @@ impl Parameters {
         self.latest = self.latest.next();
         self.pending = Some((self.latest, *values));
         self.wide_bounds = self.wide_bounds.or(Bounds::of(&settings));
-        self.settled_blocks = 0;
+        (self.in_force_blocks, self.settled_blocks) = (0, 0);
         Ok(self.latest)
     }
 
@@ -105,16 +108,17 @@ impl Parameters {
     }
 
     /// Narrows the bounds once blocks show that the committed values are in
-    /// force, with no ramp in progress and nothing left that fades.
+    /// force, with no ramp in progress and nothing left that fades; or have been for so long that
+    /// a drive that still reports a ramp is wrong.
     pub fn shown(&mut self, block: &Block) {
         let is_settling = (block.samples.iter()).any(|s| s.flags.has(SampleFlags::SETTLING));
         let is_in_force = block.revision == self.revision && self.pending.is_none();
-        self.settled_blocks = if is_in_force && !is_settling {
-            self.settled_blocks.saturating_add(1)
-        } else {
-            0
-        };
-        if self.settled_blocks > 0 && self.wide_bounds.has_faded(self.settled_blocks) {
+        let counted = |blocks: u32, goes_on| if goes_on { blocks.saturating_add(1) } else { 0 };
+        self.in_force_blocks = counted(self.in_force_blocks, is_in_force);
+        self.settled_blocks = counted(self.settled_blocks, is_in_force && !is_settling);
+        let wide = &self.wide_bounds;
+        let has_faded = self.settled_blocks > 0 && wide.has_faded(self.settled_blocks);
+        if has_faded || (self.in_force_blocks > 0 && wide.has_settled(self.in_force_blocks)) {
             self.wide_bounds = self.bounds;
         }
     }
@@ -193,6 +197,35 @@ mod tests {
         assert_eq!(parameters.bounds_in_force(), both);
         parameters.shown(&block(revision, 0));
         assert_eq!(parameters.bounds_in_force(), without);
+    }
+
+    /// From 4.5 to 1 N·m takes 35 ms at 100 N·m/s.
+    #[test]
+    fn a_drive_that_says_for_ever_that_it_settles_is_not_believed() {
+        let mut values = Values::default();
+        let mut parameters = Parameters::new(Some((Revision(1), values)));
+        values.set(id::TORQUE_LIMIT, 1.0);
+        let revision = parameters.propose(&values, true).unwrap();
+        parameters.accept();
+        let wide = parameters.bounds_in_force();
+        let narrow = Bounds::of(&DeviceSettings::of(&values).unwrap());
+        let settling = Block {
+            revision,
+            samples: [Sample {
+                flags: SampleFlags(SampleFlags::SETTLING),
+                ..Sample::default()
+            }; BLOCK_SAMPLES],
+            ..Block::default()
+        };
+        let mut blocks = 0;
+        while parameters.bounds_in_force() == wide {
+            parameters.shown(&settling);
+            blocks += 1;
+            assert!(blocks < 1_000, "a second, and it is still believed");
+        }
+        assert_eq!(parameters.bounds_in_force(), narrow);
+        // 2·(36 · 0.4 + 0.8 + 4.5) N·m at 0.1 N·m in a block.
+        assert!((390..400).contains(&blocks), "{blocks} ms");
     }
 
     #[test]

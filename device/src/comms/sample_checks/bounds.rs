@@ -13,6 +13,10 @@ const FAST_SHARE: f64 = 1.15;
 /// block's mean: 80 K warmer is 1.31, and the drive takes 1.5.
 const WARM: f64 = 2.0;
 
+/// A ramp of the joint takes as long as the slew limit for Ts·ln(kr/kr′), and a stiffness may be
+/// from 10⁻⁶ to 10⁹ N·m/rad: ln 10¹⁵ is 34.6.
+const SOFTEST: f32 = 36.0;
+
 /// For rounding of a torque, N·m.
 const ROUNDING_NM: f32 = 1e-3;
 
@@ -127,6 +131,19 @@ impl Bounds {
         #[expect(clippy::cast_precision_loss, reason = "some thousands")]
         let blocks = blocks as f32;
         blocks * self.fade_nm >= self.added_nm
+    }
+
+    /// Whether every ramp that these bounds leave room for is at its end after this number of
+    /// blocks, whatever the drive says: torques move by the slew limit or faster. Twice as long,
+    /// as one may begin where another ends.
+    pub fn has_settled(&self, blocks: u32) -> bool {
+        let moved_nm = self.model_torque_nm + self.added_nm + self.torque_nm;
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "more blocks than f32 counts are hours"
+        )]
+        let blocks = blocks as f32;
+        blocks * self.fade_nm >= 2.0 * (SOFTEST * self.joint_nm + moved_nm)
     }
 
     /// Whether a sample's torque is within the limit, and between zero and its model torque,

@@ -7,11 +7,12 @@
 use crate::rendering;
 use crate::support::{Heard, random_values};
 use crate::support::{Host, set};
+use crepitus_device::comms::sample_checks::Bounds;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::parameters::{self, id};
-use crepitus_protocol::telemetry::{Block, Sample, SampleFlags};
-use crepitus_protocol::{LimitReason, Revision, TICK_S, Values};
+use crepitus_protocol::telemetry::{BLOCK_TICKS, Block, Sample, SampleFlags};
+use crepitus_protocol::{DeviceSettings, LimitReason, Revision, TICK_S, Values};
 use fastrand::Rng;
 use std::collections::BTreeMap;
 
@@ -62,6 +63,14 @@ impl Change {
     fn static_nm(&self, ticks: f64) -> f64 {
         let ([_, ts0], [_, ts1]) = (Self::torques(&self.from), Self::torques(&self.to));
         ts0 + (ts1 - ts0) * (ticks / self.ticks()).min(1.0)
+    }
+
+    /// No drive settles for longer than comms believes one.
+    fn settles(&self, blocks: u32) {
+        let [from, to] = [&self.from, &self.to]
+            .map(|values| Bounds::of(&DeviceSettings::of(values).expect("committed")));
+        let has_settled = from.or(to).has_settled(blocks);
+        assert!(!has_settled, "it settles still after {blocks} blocks");
     }
 
     /// |T| ≤ Ts, wherever Ts is on its way.
@@ -131,6 +140,10 @@ impl Watch {
                 .next_back()
                 .map_or(to, |(_, values)| *values);
             let change = Change { from, to };
+            if (block.samples.iter()).any(|sample| sample.flags.has(SampleFlags::SETTLING)) {
+                let ticks = block.first_tick - begun.1;
+                change.settles(u32::try_from(ticks / u64::from(BLOCK_TICKS)).expect("short"));
+            }
             for (i, sample) in (0_u32..).zip(&block.samples) {
                 let tick = block.first_tick - begun.1 + u64::from(i) + 1;
                 let tick = f64::from(u32::try_from(tick).expect("short"));
