@@ -1,4 +1,4 @@
-//! Cycles of the tasks of a tick by function, with a symptom or the vibration actuator and
+//! Cycles of the tasks of a tick by function and by module, with a symptom or the vibration actuator and
 //! without, and while a commit arrives: where they go is seen before they are saved.
 //!
 //! `cargo test -p crepitus-emulator --test drive_image -- --nocapture profile`; all
@@ -75,32 +75,60 @@ impl Profile {
         worst.expect("a run")
     }
 
-    /// Prints cycles of the worst tick and of the mean one, by innermost function.
+    /// Prints cycles of the worst tick and of the mean one, by innermost function and by module.
     fn print(&self, name: &str, lines: &Lines) {
-        let runs = self.runs.len() as u64;
         println!(
             "\n{name}: worst {}, mean {}",
             sum(self.worst()),
-            sum(&self.all) / runs
+            sum(&self.all) / self.runs.len() as u64
         );
-        let mut functions: BTreeMap<String, (u64, u64)> = BTreeMap::new();
+        let innermost = |functions: &[&str]| functions.last().map(|f| (*f).to_owned());
+        self.print_by("function", lines, LISTED, innermost);
+        let of_ours = |functions: &[&str]| functions.iter().rev().find_map(|f| module(f));
+        self.print_by("module", lines, usize::MAX, of_ours);
+    }
+
+    /// Prints a table by what `key` makes of the functions of an instruction, the innermost last.
+    fn print_by(
+        &self,
+        title: &str,
+        lines: &Lines,
+        most: usize,
+        key: impl Fn(&[&str]) -> Option<String>,
+    ) {
+        let mut table: BTreeMap<String, (u64, u64)> = BTreeMap::new();
         let mut add = |addresses: &Addresses, is_worst: bool| {
             for (address, cycles) in addresses {
                 let frames = lines.frames(*address);
-                let function = frames.last().map_or("?", |frame| frame.function.as_str());
-                let (worst, mean) = functions.entry(function.to_owned()).or_default();
+                let functions: Vec<&str> = frames.iter().map(|f| f.function.as_str()).collect();
+                let key = key(&functions).unwrap_or_else(|| "?".to_owned());
+                let (worst, mean) = table.entry(key).or_default();
                 *if is_worst { worst } else { mean } += cycles;
             }
         };
         add(self.worst(), true);
         add(&self.all, false);
-        let mut functions: Vec<(String, (u64, u64))> = functions.into_iter().collect();
-        functions.sort_by_key(|(_, (worst, _))| std::cmp::Reverse(*worst));
-        println!("{:>6} {:>6}", "worst", "mean");
-        for (function, (worst, all)) in functions.iter().take(LISTED) {
-            println!("{worst:>6} {:>6} {function}", all / runs);
+        let mut table: Vec<(String, (u64, u64))> = table.into_iter().collect();
+        table.sort_by_key(|(_, (worst, _))| std::cmp::Reverse(*worst));
+        println!("{:>6} {:>6} {title}", "worst", "mean");
+        for (key, (worst, all)) in table.iter().take(most) {
+            println!("{worst:>6} {:>6} {key}", all / self.runs.len() as u64);
         }
     }
+}
+
+/// The module of a function of the project, to the depth of `crepitus_device::drive::motor`.
+/// What serves any module, arithmetic and the core's library, has none: it is its caller's.
+fn module(function: &str) -> Option<String> {
+    let path = function.trim_start_matches('<');
+    let ours = ["crepitus_", "drive::", "board::"];
+    let is_ours = ours.iter().any(|crate_name| path.starts_with(crate_name));
+    if !is_ours || path.starts_with("crepitus_model::real::") {
+        return None;
+    }
+    let is_module = |name: &&str| name.starts_with(char::is_lowercase);
+    let names: Vec<&str> = path.split("::").take(4).take_while(is_module).collect();
+    Some(names.join("::"))
 }
 
 #[test]
