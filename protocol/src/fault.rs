@@ -247,9 +247,10 @@ pub const FAULTS: [FaultSpec; 48] = [
     FaultSpec {
         fault: Fault::RenderingLate,
         name: "rendering-late",
-        cause: "the model's task does not finish within its tick, or its timer has stopped or is out of step",
+        cause: "the model's task does not finish within its tick, or its timer has stopped or has another rate",
         detector: Detector::Drive,
-        detection: "20 ticks without a new result; one in time makes up for a fifth of one that is late",
+        detection: "20 ticks without a new result, or after one more than one a tick; one in time makes up for a fifth of \
+                    one that is late",
         reaction: FLOAT,
         within_ticks: Some(21),
         clear: CLEAR,

@@ -33,6 +33,8 @@ pub struct Rendering {
     is_settling: bool,
     /// Speed of the last tick.
     omega_rad_s: f32,
+    /// The tick that the last result was of.
+    of_tick: u32,
     stages: Stages,
 }
 
@@ -52,6 +54,7 @@ impl Rendering {
             is_removing: false,
             is_settling: false,
             omega_rad_s: 0.0,
+            of_tick: 0,
         };
         rendering.apply(plan, 0.0);
         rendering
@@ -103,6 +106,21 @@ impl Rendering {
         exchange.render_took_plan();
     }
 
+    /// The tick that the next result is of. With more results than ticks it is one that is not due
+    /// yet, which `command_motor` takes for a late one until there is no torque: the timer
+    /// runs too fast, and with it the model's time.
+    #[inline]
+    fn next(&mut self, turn: &Turn) -> u32 {
+        let next = self.of_tick.wrapping_add(1);
+        let is_behind = next.wrapping_sub(turn.tick).cast_signed() < 0;
+        self.of_tick = if turn.is_armed && !is_behind {
+            next
+        } else {
+            turn.tick
+        };
+        self.of_tick
+    }
+
     fn render(&mut self, turn: &Turn, sampled: &Sampled) -> Rendered {
         let seen = Seen {
             sample: sampled.shaft,
@@ -127,7 +145,7 @@ impl Rendering {
         }
         self.is_settling = shown.settling;
         Rendered {
-            tick: turn.tick,
+            tick: self.next(turn),
             count: sampled.count,
             omega_rad_s: sampled.omega_rad_s,
             lost_ticks: sampled.lost_ticks,

@@ -54,8 +54,9 @@ pub(crate) struct DriveModel {
     has_rejected: bool,
     has_restarted: bool,
     restarts: u32,
-    /// The latest tick that it has reported since.
+    /// The latest tick that it has reported since, and whether its last block was the first to.
     latest_tick: u64,
+    is_newest: bool,
     reassembly: (Revision, Reassembly),
     /// Revisions that its statuses have reported.
     revisions: BTreeSet<u32>,
@@ -86,6 +87,7 @@ impl DriveModel {
             has_restarted: false,
             restarts: 0,
             latest_tick: 0,
+            is_newest: false,
             reassembly: (Revision::NONE, Reassembly::new(0, 0, 0)),
             revisions: BTreeSet::new(),
             crash_part: None,
@@ -100,7 +102,7 @@ impl DriveModel {
         self.blocks.back().is_some_and(|block| {
             let is_live = matches!(block.flags.state(), State::Arming | State::Armed);
             let is_over = |sample: &Sample| sample.current_ma == OVERCURRENT_MA;
-            is_live && block.end_tick() == self.latest_tick && block.samples.iter().all(is_over)
+            is_live && self.is_newest && block.samples.iter().all(is_over)
         })
     }
 
@@ -291,6 +293,7 @@ impl DriveModel {
             ..Block::default()
         };
         self.block_ms = 0;
+        self.is_newest = block.end_tick() > self.latest_tick;
         self.latest_tick = self.latest_tick.max(block.end_tick());
         self.blocks.push_back(block);
         self.sequence = self.sequence.wrapping_add(1);

@@ -132,8 +132,8 @@ pub struct Board {
     converts: [bool; 2],
     /// And that of the inputs that change slowly.
     converts_slow: bool,
-    /// The drive's rendering is ready in time.
-    renders: bool,
+    /// How often the drive renders in a tick: once.
+    renderings: u32,
     /// The drive's crystal has 12 MHz instead of 8.
     drive_is_fast: bool,
     /// The wire by which the drive reads the line of comms is whole.
@@ -214,7 +214,7 @@ impl Board {
             comparator_tripped: false,
             converts: [true; 2],
             converts_slow: true,
-            renders: true,
+            renderings: 1,
             drive_is_fast: false,
             comms_line_reaches_drive: true,
             interval_us: TICK_US,
@@ -230,8 +230,8 @@ impl Board {
             self.extra_drive_tick();
         }
         let drive_runs = self.drive_health == Health::Runs;
-        if drive_runs && self.renders {
-            self.drive.render_torque(self.leg.count().cast_unsigned());
+        if drive_runs {
+            self.render();
         }
         self.leg.first_half();
         self.check_comparator();
@@ -272,9 +272,15 @@ impl Board {
 
     /// A tick of a drive whose crystal is too fast.
     fn extra_drive_tick(&mut self) {
-        if self.drive_health == Health::Runs && self.renders {
-            self.drive.render_torque(self.leg.count().cast_unsigned());
+        if self.drive_health == Health::Runs && self.renderings > 0 {
+            self.render();
             self.command();
+        }
+    }
+
+    fn render(&mut self) {
+        for _ in 0..self.renderings {
+            self.drive.render_torque(self.leg.count().cast_unsigned());
         }
     }
 

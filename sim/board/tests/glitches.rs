@@ -47,8 +47,8 @@ fn a_moment_under_torque_is_no_fault() {
     flicker(
         &mut host,
         19,
-        |board| board.set_rendering(false),
-        |board| board.set_rendering(true),
+        |board| board.set_renderings(0),
+        |board| board.set_renderings(1),
     );
     flicker(
         &mut host,

@@ -96,10 +96,10 @@ impl Board {
         self.interval_us = interval_us;
     }
 
-    /// Sets whether the drive's model is ready within its tick, or never: a task
-    /// that hangs, or a timer that has stopped.
-    pub fn set_rendering(&mut self, in_time: bool) {
-        self.renders = in_time;
+    /// Sets how often the drive's model is rendered in a tick: never by a task that hangs, or a
+    /// timer that has stopped; twice by one that is too fast.
+    pub fn set_renderings(&mut self, in_a_tick: u32) {
+        self.renderings = in_a_tick;
     }
 
     /// Sets the schema hash of the drive's program from its next start on.

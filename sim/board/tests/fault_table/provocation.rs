@@ -49,11 +49,21 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
             case("while armed", drive_line_off, mend_drive_line),
             case("at arming", drive_line_off, mend_drive_line).when(Arming),
         ],
-        Fault::RenderingLate => vec![case(
-            "the model is never ready",
-            |host, _| board(host).set_rendering(false),
-            |host| board(host).set_rendering(true),
-        )],
+        Fault::RenderingLate => {
+            let once = |host: &mut Host| board(host).set_renderings(1);
+            vec![
+                case(
+                    "the model is never ready",
+                    |host, _| board(host).set_renderings(0),
+                    once,
+                ),
+                case(
+                    "its timer is twice as fast",
+                    |host, _| board(host).set_renderings(2),
+                    once,
+                ),
+            ]
+        }
         Fault::CurrentDisagreement => drive::current_disagreement(),
         Fault::CommsLineOff => drive::line_of_comms_unseen(),
         Fault::TickIrregular => drive::tick_irregular(),

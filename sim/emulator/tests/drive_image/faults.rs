@@ -155,6 +155,21 @@ fn a_timer_of_the_model_at_half_its_rate() {
 }
 
 #[test]
+fn a_timer_of_the_model_that_is_too_fast() {
+    // With twice the rate every other run begins with `command_motor`, and ends after it.
+    for reload in [2_100, 1_400, 4_000] {
+        let Some(mut host) = under_torque() else {
+            return;
+        };
+        host.board.mcu_mut().poke(RENDER_RELOAD, reload - 1);
+        let halves = host.halves_until_off(2 * limit(Fault::RenderingLate));
+        println!("timer of the model at {reload} of 4200: off after {halves} half ticks");
+        host.run(200);
+        assert_eq!(drive_fault(&mut host), Fault::RenderingLate.code());
+    }
+}
+
+#[test]
 fn a_timer_of_the_command_at_another_rate() {
     for reload in [3_500, 5_000] {
         let Some(mut host) = under_torque() else {
