@@ -473,18 +473,14 @@ impl Bench {
         if now == self.revision {
             return;
         }
-        // One that the drive would take for old is given the next after what it has in force.
-        if self.drive.has_reported_before(now) {
-            self.revision = now;
-            return;
-        }
-        // Commits that were refused had numbers, too; and what the drive has
-        // refused after it was taken for committed is given another.
-        let mut next = self.revision;
-        while next != now {
-            next = next.next();
+        // Commits that were refused had numbers, too; what the drive has refused after it was
+        // taken for committed is given another; and one that the drive would take for old the
+        // next after what it has in force.
+        let mut before = now;
+        while before != self.revision && !self.drive.has_reported_before(before) {
             assert!(self.numbered > 0, "a revision without a commit");
             self.numbered -= 1;
+            before = Revision(before.0.wrapping_sub(1));
         }
         self.revision = now;
     }
