@@ -5,8 +5,8 @@ mod drive;
 mod slow;
 
 use crate::breakage::{
-    board, comms_line_off, drive_line_off, mend_comms_line, mend_drive_line, mend_encoder, nothing,
-    once, swap_encoder,
+    comms_line_off, drive_line_off, mend_comms_line, mend_drive_line, mend_encoder, nothing, once,
+    swap_encoder,
 };
 use crate::case::Moment::Arming;
 use crate::case::{Case, case};
@@ -49,21 +49,7 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
             case("while armed", drive_line_off, mend_drive_line),
             case("at arming", drive_line_off, mend_drive_line).when(Arming),
         ],
-        Fault::RenderingLate => {
-            let once = |host: &mut Host| board(host).set_renderings(1);
-            vec![
-                case(
-                    "the model is never ready",
-                    |host, _| board(host).set_renderings(0),
-                    once,
-                ),
-                case(
-                    "its timer is twice as fast",
-                    |host, _| board(host).set_renderings(2),
-                    once,
-                ),
-            ]
-        }
+        Fault::RenderingLate => drive::rendering_late(),
         Fault::CurrentDisagreement => drive::current_disagreement(),
         Fault::CommsLineOff => drive::line_of_comms_unseen(),
         Fault::TickIrregular => drive::tick_irregular(),

@@ -143,6 +143,22 @@ pub(super) fn current_missing() -> Vec<Case> {
     ]
 }
 
+pub(super) fn rendering_late() -> Vec<Case> {
+    let mend = |host: &mut Host| board(host).set_renderings(1);
+    vec![
+        case(
+            "the model is never ready",
+            |host, _| board(host).set_renderings(0),
+            mend,
+        ),
+        case(
+            "its timer is twice as fast",
+            |host, _| board(host).set_renderings(2),
+            mend,
+        ),
+    ]
+}
+
 pub(super) fn tick_irregular() -> Vec<Case> {
     vec![
         case(
