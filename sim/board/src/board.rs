@@ -132,7 +132,7 @@ pub struct Board {
     converts: [bool; 2],
     /// And that of the inputs that change slowly.
     converts_slow: bool,
-    /// How often the drive renders in a tick: once.
+    /// Runs of `render_torque` in a tick: one, if its timer is right.
     renderings: u32,
     /// The drive's crystal has 12 MHz instead of 8.
     drive_is_fast: bool,

@@ -133,7 +133,7 @@ impl Bounds {
         blocks * self.fade_nm >= self.added_nm
     }
 
-    /// Whether every ramp that these bounds leave room for is at its end after this number of
+    /// Whether the longest ramp of parameters within these bounds has ended after this number of
     /// blocks, whatever the drive says: torques move by the slew limit or faster. Twice as long,
     /// as one may begin where another ends.
     pub fn has_settled(&self, blocks: u32) -> bool {

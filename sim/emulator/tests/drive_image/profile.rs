@@ -118,7 +118,7 @@ impl Profile {
 }
 
 /// The module of a function of the project, to the depth of `crepitus_device::drive::motor`.
-/// What serves any module, arithmetic and the core's library, has none: it is its caller's.
+/// `None` for arithmetic and the core's library, whose cycles count for their caller.
 fn module(function: &str) -> Option<String> {
     let path = function.trim_start_matches('<');
     let ours = ["crepitus_", "drive::", "board::"];
