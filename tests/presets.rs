@@ -587,5 +587,28 @@ fn a_part_of_a_name_leads_to_the_presets_that_have_it() {
     let error = stderr(&run(&["presets", "MAS-2"]));
     assert!(error.contains("mas-2-catch, mas-2-reflex"), "{error}");
     let error = stderr(&run(&["presets", "nothing-like-it"]));
-    assert!(!error.contains("of this kind"), "{error}");
+    assert!(
+        !error.contains("of this kind") && !error.contains("did you mean"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_slip_of_the_finger_leads_to_the_name() {
+    for (arguments, meant) in [
+        (&["presets", "mas-2-katch"][..], "mas-2-catch"),
+        (&["params", "apply", "mas-2-katch"], "mas-2-catch"),
+        (&["params", "apply", "tardieu-fats"], "tardieu-fast"),
+        (&["scenes", "tardieu-fats"], "tardieu-fast"),
+        (&["run", "Tardieu-Fast"], "tardieu-fast"),
+        (&["run", "scenes/tardieu-fats.toml"], "tardieu-fast"),
+    ] {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let error = stderr(&output);
+        assert!(
+            error.contains(&format!(" (did you mean {meant}?)")),
+            "{error}"
+        );
+    }
 }

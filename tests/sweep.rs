@@ -433,6 +433,10 @@ fn what_is_wrong_is_said_before_anything_runs() {
             "no such scene ships",
         ),
         (
+            &["low-sped", "--vary", "duration_s=1,2"],
+            "no such scene ships (did you mean low-speed?)",
+        ),
+        (
             &["low-speed", "--vary", "duration_s=1,2", "--shard", "4/3"],
             "no part 4 of 3",
         ),

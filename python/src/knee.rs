@@ -3,7 +3,7 @@
 use crate::errors;
 use crepitus_scene::preset::{self, Knee};
 use crepitus_scene::shipped::Shipped;
-use crepitus_scene::{Overrides, Preset};
+use crepitus_scene::{Overrides, Preset, similar};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::path::Path;
@@ -23,10 +23,14 @@ pub(crate) fn knee(what: &Path) -> PyResult<Knee> {
             .read(&Overrides::default())
             .map(|scene| Knee::Scene(Box::new(scene)))
             .map_err(failed),
-        None => Err(PyValueError::new_err(format!(
-            "{}: there is no such file, no such preset and no such scene: crepitus.presets() and crepitus.scenes() \
-             list those that ship",
-            what.display()
-        ))),
+        None => {
+            let name = what.to_string_lossy();
+            let meant = similar::preset(&name).or_else(|| similar::scene(&name));
+            Err(PyValueError::new_err(format!(
+                "{name}: there is no such file, no such preset and no such scene{}: crepitus.presets() and \
+                 crepitus.scenes() list those that ship",
+                similar::question(meant)
+            )))
+        }
     }
 }

@@ -21,7 +21,7 @@
 //! `knees`.
 
 use crate::finding::{HEALTHY, Knee};
-use crepitus_scene::preset;
+use crepitus_scene::{preset, similar};
 use serde::{Deserialize, Serialize};
 
 /// Most trials of a lesson.
@@ -308,10 +308,7 @@ fn text(key: &'static str, text: &str, least: usize, most: usize) -> Result<(), 
 /// A preset whose name begins alike.
 fn similar(name: &str) -> Option<String> {
     let shipped = preset::shipped().iter().map(|preset| preset.name.as_str());
-    let names = shipped.chain(std::iter::once(HEALTHY));
-    let distance = |other: &str| strsim::damerau_levenshtein(name, other);
-    let nearest = names.min_by_key(|other| distance(other))?;
-    (distance(nearest) <= 2 + name.chars().count() / 4).then(|| nearest.to_owned())
+    similar::similar(shipped.chain(std::iter::once(HEALTHY)), name).map(str::to_owned)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, warn};
 use crepitus_scene::preset::{self, Disorder, Preset};
+use crepitus_scene::similar::{question, similar};
 use std::env;
 use std::fs;
 use std::io::{self, ErrorKind, Write};
@@ -89,17 +90,19 @@ pub(crate) fn grade_0(name: &str) -> Option<String> {
     ))
 }
 
-/// Names the presets that ship whose names contain this one, in small or capital letters,
-/// as the end of a sentence; empty without any.
+/// What is probably meant by a name that no preset has, as the end of a sentence: those that
+/// ship whose names contain it, in small or capital letters, or the one most like it. Empty
+/// without any.
 pub(crate) fn of_this_kind(name: &str) -> String {
     let small = name.to_lowercase();
     let names = preset::shipped().iter().map(|preset| preset.name.as_str());
-    let alike: Vec<&str> = names.filter(|other| other.contains(&small)).collect();
-    if small.is_empty() || alike.is_empty() {
-        String::new()
-    } else {
-        format!("; of this kind are {}", alike.join(", "))
+    let alike: Vec<&str> = names.clone().filter(|n| n.contains(&small)).collect();
+    if !small.is_empty() && !alike.is_empty() {
+        return format!("; of this kind are {}", alike.join(", "));
     }
+    let files = files().unwrap_or_default();
+    let own = files.iter().filter_map(|file| file.file_stem()?.to_str());
+    question(similar(names.chain(own), name))
 }
 
 /// All that can be read, with their files, in the order of their names; warns of the others. Without

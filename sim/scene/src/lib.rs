@@ -31,6 +31,7 @@ pub mod reference;
 pub mod run;
 pub mod scene;
 pub mod shipped;
+pub mod similar;
 pub mod trace;
 pub mod walk;
 

@@ -2,6 +2,7 @@
 
 use crate::error::{Origin, SceneError};
 use crate::scene::{Overrides, Scene, text_of};
+use crate::similar;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -146,9 +147,13 @@ impl Source {
             return Ok(Self::of_text(shipped.file(), shipped.text.to_owned()));
         }
         if !path.exists() {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            let meant = similar::question(similar::scene(&stem));
             return Err(whole(
                 path,
-                "there is no such file, and no such scene ships: `crepitus scenes` lists those that do",
+                format!(
+                    "there is no such file, and no such scene ships{meant}: `crepitus scenes` lists those that do"
+                ),
             ));
         }
         Ok(Self::of_text(path.to_owned(), text_of(path)?))

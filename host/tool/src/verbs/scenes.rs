@@ -3,6 +3,7 @@
 use crate::failure::{Failure, print, print_json};
 use clap::Args;
 use crepitus_scene::shipped::{SHIPPED, Shipped};
+use crepitus_scene::similar::{self, question};
 use crepitus_scene::{Overrides, SceneError};
 use crepitus_table::{Cell, Table};
 use std::path::Path;
@@ -25,7 +26,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         return match Shipped::find(Path::new(name)) {
             Some(shipped) => print(shipped.text),
             None => Err(Failure::Input(format!(
-                "no scene \"{name}\" ships: `crepitus scenes` lists those that do"
+                "no scene \"{name}\" ships{}: `crepitus scenes` lists those that do",
+                question(similar::scene(name))
             ))),
         };
     }

@@ -5,6 +5,7 @@
 
 use super::{Defaults, Node, Value};
 use crate::error::{Origin, SceneError};
+use crate::similar::{question, similar};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -366,13 +367,6 @@ fn one_of<'n>(names: impl Iterator<Item = &'n str> + Clone, given: &str) -> Stri
         [only] => format!("allowed is {only}"),
         [first @ .., last] => format!("allowed are {} and {last}", first.join(", ")),
     };
-    let nearest = names
-        .map(|name| (strsim::jaro_winkler(name, given), name))
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    match nearest {
-        Some((likeness, name)) if likeness > 0.85 && name != given => {
-            format!("{list} (did you mean {name}?)")
-        }
-        _ => list,
-    }
+    let nearest = similar(names, given).filter(|name| *name != given);
+    format!("{list}{}", question(nearest))
 }

@@ -6,6 +6,7 @@ use crepitus_board::values::{with_preset, with_scene};
 use crepitus_protocol::Values;
 use crepitus_scene::preset::{self, Knee, Preset};
 use crepitus_scene::shipped::{self, Shipped};
+use crepitus_scene::similar::{self, question};
 use crepitus_scene::{Overrides, Scene};
 use std::path::Path;
 
@@ -39,7 +40,10 @@ impl Source {
             return Err(Failure::Input(text));
         }
         if !is_summary && shipped.is_none() {
-            let alike = name.map(own_presets::of_this_kind).unwrap_or_default();
+            let of_this_kind = name.map(own_presets::of_this_kind);
+            let alike = of_this_kind
+                .filter(|presets| !presets.is_empty())
+                .unwrap_or_else(|| question(name.and_then(similar::scene)));
             return Err(Failure::Input(format!(
                 "{}: there is no such file, no such preset and no such scene{alike}: `crepitus presets` and \
                  `crepitus scenes` list those that ship",
