@@ -120,13 +120,7 @@ impl Scene {
         overrides.apply(&mut document)?;
         let root = document.section();
 
-        let version = root.number("version", Range::closed(0.0, 1e9))?;
-        if version != f64::from(SCENE_VERSION) {
-            return Err(root.key_error(
-                "version",
-                format!("{version} is not known: this program reads version {SCENE_VERSION}"),
-            ));
-        }
+        check_version(&root)?;
         let title = root.text("title")?.to_owned();
         let description = root
             .optional_text("description")?
@@ -373,6 +367,19 @@ fn check_released(
         return refuse("\"released\" means that nobody holds the leg: leave [effects.hand] out");
     }
     Ok(())
+}
+
+fn check_version(root: &Section<'_>) -> Result<(), SceneError> {
+    let problem = if root.has("version") {
+        let version = root.number("version", Range::closed(0.0, 1e9))?;
+        if version == f64::from(SCENE_VERSION) {
+            return Ok(());
+        }
+        format!("{version} is not known: this program reads version {SCENE_VERSION}")
+    } else {
+        format!("this key is missing: a scene needs `version = {SCENE_VERSION}` as its first line")
+    };
+    Err(root.key_error("version", problem))
 }
 
 impl Overrides {

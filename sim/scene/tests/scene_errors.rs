@@ -47,6 +47,10 @@ fn every_error_names_line_key_and_what_is_allowed() {
             ["line 1", "`version`", "version 1"],
         ),
         (
+            refused("version = 1\n", ""),
+            ["x.toml", "missing", "needs `version = 1`"],
+        ),
+        (
             refused("duration_s = 1.0", "duration_s = -1.0"),
             ["line 3", "`duration_s`", "above 0"],
         ),

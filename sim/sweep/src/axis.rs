@@ -171,9 +171,14 @@ fn interval(from: &str, to: &str, scale: &str) -> Result<Values, AxisError> {
     let (from, to) = (end(from)?, end(to)?);
     let digits = scale.find(|c: char| c.is_ascii_digit());
     let (name, count) = scale.split_at(digits.unwrap_or(scale.len()));
-    let scale = match name {
+    let kind = match name {
         "lin" => Scale::Linear,
         "log" => Scale::Logarithmic,
+        "" => {
+            return refuse(format!(
+                "{scale:?} does not say how its values are spaced: expected lin{scale} or log{scale}"
+            ));
+        }
         _ => {
             return refuse(format!(
                 "{name:?} is no scale: expected lin or log, with the number of values for a grid, such as lin11"
@@ -194,7 +199,7 @@ fn interval(from: &str, to: &str, scale: &str) -> Result<Values, AxisError> {
     if from == to {
         return refuse(format!("both ends are {from}: give one value instead"));
     }
-    if scale == Scale::Logarithmic && (from <= 0.0 || to <= 0.0) {
+    if kind == Scale::Logarithmic && (from <= 0.0 || to <= 0.0) {
         return refuse(format!(
             "log needs ends above 0, not {from} and {to}: lin takes any"
         ));
@@ -202,7 +207,7 @@ fn interval(from: &str, to: &str, scale: &str) -> Result<Values, AxisError> {
     Ok(Values::Interval {
         from,
         to,
-        scale,
+        scale: kind,
         count,
     })
 }
@@ -256,6 +261,7 @@ mod tests {
             ("a=1:x", "not a number"),
             ("a=1:inf", "not a number"),
             ("a=1:2:cube3", "no scale"),
+            ("a=1:2:3", "lin3 or log3"),
             ("a=1:2:lin1", "at least its 2 ends"),
             ("a=1:2:lin99999999999999999999", "at least"),
             ("a=0:2:log3", "above 0"),
