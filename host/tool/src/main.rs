@@ -30,9 +30,12 @@ use std::env;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let cli = Cli::try_parse().unwrap_or_else(|error| {
+    let arguments = pictures::joined(env::args_os());
+    let cli = Cli::try_parse_from(&arguments).unwrap_or_else(|error| {
         // The error repeats the arguments: parse them again, escaped.
-        let shown = env::args_os().map(|argument| safe_text::message(&argument.to_string_lossy()));
+        let shown = arguments
+            .iter()
+            .map(|argument| safe_text::message(&argument.to_string_lossy()));
         Cli::try_parse_from(shown).err().unwrap_or(error).exit()
     });
     match cli.verb.run(cli.json) {

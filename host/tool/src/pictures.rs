@@ -4,6 +4,7 @@ use crate::failure::{Failure, warn};
 use crate::results::Files;
 use clap::Args;
 use crepitus_plot::{Column, Paper, PdfError, Picture};
+use std::ffi::OsString;
 use std::str::FromStr;
 
 /// Whether pictures are wanted, and how.
@@ -38,6 +39,28 @@ impl FromStr for PictureFormat {
             _ => Err("expected svg or pdf".to_owned()),
         }
     }
+}
+
+/// Arguments with `--pictures pdf` as `--pictures=pdf`. The format may be left out, so what
+/// follows it would be taken for an argument of its own.
+pub(crate) fn joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut joined: Vec<OsString> = Vec::new();
+    let mut are_options = true;
+    for argument in arguments {
+        are_options &= argument != "--";
+        match joined.last_mut() {
+            Some(last)
+                if are_options
+                    && *last == "--pictures"
+                    && (argument == "svg" || argument == "pdf") =>
+            {
+                last.push("=");
+                last.push(argument);
+            }
+            _ => joined.push(argument),
+        }
+    }
+    joined
 }
 
 /// Parses the width of a paper's figures.
@@ -103,5 +126,27 @@ fn file(
     match made {
         Ok(content) => Ok((name, content)),
         Err(e) => Err(Failure::Work(format!("{name} cannot be made: {e}"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_format_belongs_to_the_option_before_it() {
+        for (given, meant) in [
+            (
+                "run a --pictures pdf --force",
+                "run a --pictures=pdf --force",
+            ),
+            ("run --pictures svg a", "run --pictures=svg a"),
+            ("run --pictures a", "run --pictures a"),
+            ("run --pictures=svg pdf", "run --pictures=svg pdf"),
+            ("run -- --pictures pdf", "run -- --pictures pdf"),
+        ] {
+            let made = joined(given.split(' ').map(OsString::from));
+            assert_eq!(made.join(" ".as_ref()), *meant, "{given}");
+        }
     }
 }
