@@ -1,9 +1,10 @@
 //! What the verbs that carry out a study share: the progress that they show,
-//! and how they are interrupted.
+//! how they are interrupted, and what they were measured on.
 
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Progress;
+use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::{Cancelled, StudyError, Watcher};
 
 /// Moves the progress bar, and stops at Ctrl-C.
@@ -32,4 +33,19 @@ pub(crate) fn failed(error: StudyError) -> Failure {
         StudyError::Cancelled(_) => Failure::interrupted(),
         other => Failure::Work(format!("the study failed: {other}")),
     }
+}
+
+/// The computer that a study runs on, as its `summary.json` names it.
+pub(crate) fn host() -> String {
+    format!("{} {}", std::env::consts::ARCH, std::env::consts::OS)
+}
+
+/// What times were measured on, and in which build.
+pub(crate) fn measured_on(host: &str) -> String {
+    let build = if cfg!(debug_assertions) {
+        "a debug build: times mean little"
+    } else {
+        "a release build"
+    };
+    format!("{host}, {CLOCK}, {build}")
 }

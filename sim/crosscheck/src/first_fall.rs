@@ -175,33 +175,9 @@ fn look(p: &Series, c: &[f64], doubt: f64, a: f64, b: f64) -> Look {
     Look::Halve
 }
 
-/// The zero between `low`, where p is above zero, and `high`, where it is not,
-/// by Newton's method that bisects where it would leave the bracket.
-fn polish(p: &Series, mut low: Dd, mut high: Dd, doubt: f64) -> Root {
-    let mut at = (low + high).scaled(0.5);
-    for _ in 0..200 {
-        let value = p.value(at);
-        if value > Dd::ZERO {
-            low = at;
-        } else {
-            high = at;
-        }
-        let step = value / p.slope(at);
-        let next = at - step;
-        let inside = next > low && next < high;
-        if inside && step.to_f64().abs() <= 1e-29 || value == Dd::ZERO {
-            break;
-        }
-        at = if inside {
-            next
-        } else {
-            (low + high).scaled(0.5)
-        };
-        if (high - low).to_f64() <= 1e-30 {
-            break;
-        }
-    }
-    root_at(p, at, doubt)
+/// The zero between `low`, where p is above zero, and `high`, where it is not.
+fn polish(p: &Series, low: Dd, high: Dd, doubt: f64) -> Root {
+    root_at(p, zero(p, low, high), doubt)
 }
 
 fn root_at(p: &Series, at: Dd, doubt: f64) -> Root {
@@ -214,17 +190,22 @@ fn root_at(p: &Series, at: Dd, doubt: f64) -> Root {
 }
 
 /// Where the slope is zero between `low`, where it is negative, and `high`.
-fn least(p: &Series, mut low: Dd, mut high: Dd) -> Dd {
-    let slope = p.derivative(Dd::ONE, 0.0);
+fn least(p: &Series, low: Dd, high: Dd) -> Dd {
+    zero(&p.derivative(-Dd::ONE, 0.0), low, high)
+}
+
+/// The zero between `low`, where f is above zero, and `high`, where it is not,
+/// by Newton's method that bisects where it would leave the bracket.
+fn zero(f: &Series, mut low: Dd, mut high: Dd) -> Dd {
     let mut at = (low + high).scaled(0.5);
     for _ in 0..200 {
-        let value = slope.value(at);
-        if value < Dd::ZERO {
+        let value = f.value(at);
+        if value > Dd::ZERO {
             low = at;
         } else {
             high = at;
         }
-        let step = value / slope.slope(at);
+        let step = value / f.slope(at);
         let next = at - step;
         let inside = next > low && next < high;
         if inside && step.to_f64().abs() <= 1e-29 || value == Dd::ZERO {

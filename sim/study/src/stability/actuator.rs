@@ -2,7 +2,6 @@
 
 use super::input::{ActuatorLoop, ActuatorRun, Upset};
 use super::observation::{ActuatorSeen, Observation};
-use super::observe::bits;
 use super::parameter_changes::SLEW_NM_PER_S;
 use super::subject::Subject;
 use crate::vibration::loop_gain;
@@ -188,9 +187,7 @@ fn shake<F: Real>(
             break;
         }
         seen.steps += 1;
-        seen.torque.add(torque_nm);
-        seen.torque_bits.add(bits::<F>(torque_nm));
-        seen.last_torque_nm = torque_nm;
+        seen.torque_is::<F>(torque_nm);
         watched.add(
             now_s,
             values.map(|value| value.unwrap_or(0.0)),

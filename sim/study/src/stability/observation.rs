@@ -117,6 +117,17 @@ impl Observation {
         f64::from_whole(self.steps) * self.step_s
     }
 
+    /// Records the torque at the end of a step, N·m, as it was computed in `F`.
+    #[inline]
+    pub(super) fn torque_is<F: Real>(&mut self, torque_nm: f64) {
+        let moved_nm = (torque_nm - self.last_torque_nm).abs();
+        self.largest_step_nm = self.largest_step_nm.max(moved_nm);
+        self.last_torque_nm = torque_nm;
+        self.torque.add(torque_nm);
+        self.torque_bits.add(bits::<F>(torque_nm));
+        self.mirrored_bits.add(bits::<F>(-torque_nm));
+    }
+
     /// Whether the run itself detects that its step is too long.
     pub(super) fn is_flagged(&self) -> bool {
         self.unresolved_steps > 0
@@ -148,6 +159,19 @@ impl Default for Range {
             low: f64::INFINITY,
             high: f64::NEG_INFINITY,
         }
+    }
+}
+
+/// The bits of a torque in the precision it was computed in; −0 and 0 are one
+/// torque.
+#[inline]
+#[expect(clippy::cast_possible_truncation, reason = "it was an f32")]
+fn bits<F: Real>(torque_nm: f64) -> u64 {
+    let torque_nm = torque_nm + 0.0;
+    if F::NAME == <f32 as Real>::NAME {
+        u64::from((torque_nm as f32).to_bits())
+    } else {
+        torque_nm.to_bits()
     }
 }
 

@@ -256,11 +256,7 @@ impl<F: Real> StepObserver<'_, F> {
         let travel_rad = Some(shaft.delta_phi_rad.to_f64())
             .filter(|travel| travel.is_finite())
             .unwrap_or(0.0);
-        seen.last_torque_nm = torque_nm;
-        seen.torque.add(torque_nm);
-        seen.torque_bits.add(bits::<F>(torque_nm));
-        seen.mirrored_bits.add(bits::<F>(-torque_nm));
-        seen.largest_step_nm = seen.largest_step_nm.max((torque_nm - before_nm).abs());
+        seen.torque_is::<F>(torque_nm);
         if torque_nm.to_bits() != before_nm.to_bits() {
             seen.last_change = seen.steps;
         }
@@ -334,19 +330,6 @@ fn note<F: Real>(
     if seen.events.len() < MOST_KEPT {
         seen.events.push(timed);
         seen.torques_after_nm.push(after_nm);
-    }
-}
-
-/// The bits of a torque in the precision it was computed in; −0 and 0 are one
-/// torque.
-#[inline]
-#[expect(clippy::cast_possible_truncation, reason = "it was an f32")]
-pub(super) fn bits<F: Real>(torque_nm: f64) -> u64 {
-    let torque_nm = torque_nm + 0.0;
-    if F::NAME == <f32 as Real>::NAME {
-        u64::from((torque_nm as f32).to_bits())
-    } else {
-        torque_nm.to_bits()
     }
 }
 

@@ -4,7 +4,6 @@
 use super::input::Rendered;
 use super::locators::with_locator;
 use super::observation::Observation;
-use super::observe::bits;
 use super::parameter_changes::SLEW_NM_PER_S;
 use super::subject::Subject;
 use crate::sampling::{Sampling, Walk};
@@ -108,12 +107,7 @@ fn observe<F: Real>(seen: &mut Observation, torque_nm: f64, limit_nm: f64, late_
     if seen.steps > late_step {
         seen.late_torque.add(torque_nm);
     }
-    let moved_nm = (torque_nm - seen.last_torque_nm).abs();
-    seen.largest_step_nm = seen.largest_step_nm.max(moved_nm);
-    seen.last_torque_nm = torque_nm;
-    seen.torque.add(torque_nm);
-    seen.torque_bits.add(bits::<F>(torque_nm));
-    seen.mirrored_bits.add(bits::<F>(-torque_nm));
+    seen.torque_is::<F>(torque_nm);
     seen.peak = seen.peak.max(torque_nm.abs() / limit_nm);
 }
 

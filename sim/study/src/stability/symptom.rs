@@ -5,7 +5,6 @@ mod energy;
 
 use super::input::{RefusedSymptoms, SymptomRun};
 use super::observation::{Observation, SymptomsSeen};
-use super::observe::bits;
 use super::parameter_changes::SLEW_NM_PER_S;
 use super::subject::{Rung, Subject};
 use crate::sampling::Sampling;
@@ -114,12 +113,7 @@ impl Here<'_> {
         if seen.steps > self.late_step {
             seen.late_torque.add(torque_nm);
         }
-        let moved_nm = (torque_nm - seen.last_torque_nm).abs();
-        seen.largest_step_nm = seen.largest_step_nm.max(moved_nm);
-        seen.last_torque_nm = torque_nm;
-        seen.torque.add(torque_nm);
-        seen.torque_bits.add(bits::<F>(torque_nm));
-        seen.mirrored_bits.add(bits::<F>(-torque_nm));
+        seen.torque_is::<F>(torque_nm);
     }
 
     /// With the torque at the end of each step, N·m.

@@ -4,7 +4,6 @@
 use super::criterion::BOUND_SLACK;
 use super::input::Input;
 use super::observation::{MOST_KEPT, Observation};
-use super::observe::bits;
 use super::source::motion;
 use crate::sampling::Sampling;
 use crate::true_events::TimedEvent;
@@ -82,10 +81,7 @@ fn row(seen: &mut Observation, reference: &Reference<'_>, limit_nm: f64, late_st
     if seen.steps > late_step {
         seen.late_torque.add(torque_nm);
     }
-    seen.last_torque_nm = torque_nm;
-    seen.torque.add(torque_nm);
-    seen.torque_bits.add(bits::<f64>(torque_nm));
-    seen.mirrored_bits.add(bits::<f64>(-torque_nm));
+    seen.torque_is::<f64>(torque_nm);
 }
 
 /// Records an event, whose fraction is its time.

@@ -1,6 +1,7 @@
 //! `summary.json` of a study.
 
 use super::plan::Studied;
+use crate::studying;
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::Study;
 use serde::Serialize;
@@ -30,7 +31,7 @@ impl<'a> Summary<'a> {
         Self {
             version: SUMMARY_VERSION,
             crepitus_version: env!("CARGO_PKG_VERSION"),
-            host: format!("{} {}", std::env::consts::ARCH, std::env::consts::OS),
+            host: studying::host(),
             clock: CLOCK,
             quick,
             precisions: studied.plan.precisions.iter().map(|p| p.name()).collect(),
@@ -41,11 +42,6 @@ impl<'a> Summary<'a> {
 
     /// What the times were measured on, and in which build.
     pub(super) fn measured_on(&self) -> String {
-        let build = if cfg!(debug_assertions) {
-            "a debug build: times mean little"
-        } else {
-            "a release build"
-        };
-        format!("{}, {CLOCK}, {build}", self.host)
+        studying::measured_on(&self.host)
     }
 }

@@ -2,6 +2,7 @@
 //! two.
 
 use super::table::torque;
+use crate::studying;
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::effects::variant::Change;
 use crepitus_study::effects::{EffectsStudy, Row};
@@ -33,7 +34,7 @@ impl<'a> Summary<'a> {
         Self {
             version: SUMMARY_VERSION,
             crepitus_version: env!("CARGO_PKG_VERSION"),
-            host: format!("{} {}", std::env::consts::ARCH, std::env::consts::OS),
+            host: studying::host(),
             clock: CLOCK,
             conclusion: conclusion(study),
             study,
@@ -42,12 +43,7 @@ impl<'a> Summary<'a> {
 
     /// What the times were measured on, and in which build.
     pub(super) fn measured_on(&self) -> String {
-        let build = if cfg!(debug_assertions) {
-            "a debug build: times mean little"
-        } else {
-            "a release build"
-        };
-        format!("one core, {}, {CLOCK}, {build}", self.host)
+        format!("one core, {}", studying::measured_on(&self.host))
     }
 }
 

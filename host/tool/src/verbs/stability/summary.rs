@@ -1,5 +1,6 @@
 //! `summary.json` of the matrix.
 
+use crate::studying;
 use crepitus_study::stability::cases_table::cases_table;
 use crepitus_study::stability::{Case, Cell, Matrix, Plan, Row, Verdict};
 use serde::{Serialize, Serializer};
@@ -74,7 +75,7 @@ impl<'m> Summary<'m> {
         Self {
             version: SUMMARY_VERSION,
             crepitus_version: env!("CARGO_PKG_VERSION"),
-            host: format!("{} {}", std::env::consts::ARCH, std::env::consts::OS),
+            host: studying::host(),
             long: matrix.rows.iter().any(|row| row.case.long),
             subjects: plan.subjects.len(),
             cells: matrix.rows.iter().map(|row| row.cells.len()).sum(),
