@@ -9,7 +9,7 @@ use crepitus_board::{Board, Start};
 use crepitus_protocol::host::{Answer, Operation, Refusal};
 use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::{Fault, State};
-use support::{Host, examination, scene};
+use support::{Host, examination, examination_at};
 
 fn connected() -> Host {
     let mut host = Host::new(&examination(), &Start::default());
@@ -89,32 +89,7 @@ fn a_moment_at_rest_is_no_fault() {
 /// moment: encoder and motor are judged by the push alone.
 #[test]
 fn a_leg_that_moves_while_it_is_armed_is_not_misjudged() {
-    let fast = scene(
-        r#"
-version = 1
-title = "Fast"
-duration_s = 60.0
-[motion]
-kind = "strokes"
-from_deg = 10.0
-to_deg = 80.0
-peak_speed_deg_s = 150.0
-pause_s = 0.05
-[solver]
-kind = "exact-events"
-step_s = 5e-5
-precision = "f32"
-[effects.crepitus]
-preset = "coarse"
-[effects.encoder]
-[effects.motor]
-[effects.drivetrain]
-[effects.cuff]
-[effects.limb]
-[effects.hand]
-"#,
-    );
-    let mut host = Host::new(&fast, &Start::default());
+    let mut host = Host::new(&examination_at(150.0, 0.05), &Start::default());
     host.run(400);
     host.renew_every = Some(1_000);
     let (mut proven, mut noticed) = (0, 0);

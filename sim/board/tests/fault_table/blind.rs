@@ -1,6 +1,6 @@
 //! Two faults at once, and what nothing notices: how bad it gets.
 
-use crate::support::{Host, examination, scene};
+use crate::support::{Host, examination, examination_at};
 use crepitus_board::Start;
 use crepitus_board::leg::{CurrentPath, CurrentSensor, EncoderWiring};
 use crepitus_protocol::telemetry::SampleFlags;
@@ -115,32 +115,7 @@ fn torque_that_was_interrupted_comes_back_slowly() {
 #[test]
 fn an_encoder_that_freezes_under_a_slow_motion_does_no_harm() {
     for (peak_deg_s, is_noticed) in [(15.0, false), (30.0, true)] {
-        let text = format!(
-            r#"
-version = 1
-title = "Slow"
-duration_s = 60.0
-[motion]
-kind = "strokes"
-from_deg = 10.0
-to_deg = 80.0
-peak_speed_deg_s = {peak_deg_s}
-pause_s = 0.2
-[solver]
-kind = "exact-events"
-step_s = 5e-5
-precision = "f32"
-[effects.crepitus]
-preset = "coarse"
-[effects.encoder]
-[effects.motor]
-[effects.drivetrain]
-[effects.cuff]
-[effects.limb]
-[effects.hand]
-"#
-        );
-        let host = Host::new(&scene(&text), &Start::default());
+        let host = Host::new(&examination_at(peak_deg_s, 0.2), &Start::default());
         let mut host = rendering(host, 0.2);
         host.device
             .board_mut()

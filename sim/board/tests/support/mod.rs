@@ -25,7 +25,19 @@ const PATIENCE_TICKS: u64 = 1_000;
 
 /// A scene by its text.
 pub(crate) fn scene(text: &str) -> Scene {
-    Scene::parse(Path::new("test.toml"), text, &Overrides::default()).expect("a scene")
+    changed(text, &[])
+}
+
+/// A scene by its text, with other numbers.
+fn changed(text: &str, numbers: &[(&str, f64)]) -> Scene {
+    let overrides = Overrides {
+        set: numbers
+            .iter()
+            .map(|(path, value)| ((*path).to_owned(), value.to_string()))
+            .collect(),
+        ..Overrides::default()
+    };
+    Scene::parse(Path::new("test.toml"), text, &overrides).expect("a scene")
 }
 
 /// The paper's joint on a motor whose shaft a hand moves to and fro.
@@ -55,6 +67,17 @@ preset = "coarse"
 
 pub(crate) fn examination() -> Scene {
     scene(EXAMINATION)
+}
+
+/// The same at another speed, with another pause between two strokes.
+pub(crate) fn examination_at(peak_speed_deg_s: f64, pause_s: f64) -> Scene {
+    changed(
+        EXAMINATION,
+        &[
+            ("motion.peak_speed_deg_s", peak_speed_deg_s),
+            ("motion.pause_s", pause_s),
+        ],
+    )
 }
 
 /// The same with a vibration actuator at the ankle.
