@@ -148,6 +148,20 @@ fn two_walls_that_leave_and_are_committed_again_do_not_push() {
     never_grows(&mut rig, rest, left_nm);
 }
 
+/// Nor while samples are missing, when both let go of it.
+#[test]
+fn two_walls_let_go_of_what_they_push_and_not_of_more() {
+    let (mut rig, _, at_rad) = between_two_walls(0.3);
+    let rest = (at_rad, 0.0);
+    let mut left_nm = rig.step(rest, rest, 0.0);
+    for _ in 0..2_000 {
+        let nm = lost(&mut rig, at_rad, 1);
+        assert!((0.0..=left_nm + 1e-12).contains(&nm), "{left_nm} to {nm}");
+        left_nm = nm;
+    }
+    assert_eq!(left_nm, 0.0);
+}
+
 /// Nor does the sum grow where a commit makes the weaker of them softer.
 #[test]
 fn a_wall_that_a_commit_softens_gives_the_other_no_push() {

@@ -25,4 +25,5 @@ mod random;
 mod reset;
 mod rig;
 mod rules;
+mod tank;
 mod thresholds;

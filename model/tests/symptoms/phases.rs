@@ -212,6 +212,43 @@ fn a_beat_within_a_gap_has_its_time() {
     near(share, 5.0 / 9.0, 1e-6);
 }
 
+/// The same of the start, and of the stretch that ends: what follows them comes when it would.
+#[test]
+fn whatever_a_gap_hides_of_clonus_happens_in_its_time() {
+    let case = cases().swap_remove(6);
+    let motion = motion(&case);
+    let end_s = 0.35;
+    let is_own = |word: &(Word, f64)| !word.0.is_of_play();
+    let whole = only::<f64>(case.settings, 40.0).run(end_s, &motion).words;
+    let whole: Vec<_> = whole.into_iter().filter(is_own).collect();
+    assert!(whole.len() >= 3, "{whole:?}");
+    for (hidden, time_s) in &whole {
+        let first = (time_s / TICK_S).floor() as u32 - 1;
+        let mut rig = only::<f64>(case.settings, 40.0);
+        let mut words = Vec::new();
+        let (mut tick, end) = (0, (end_s / TICK_S).round() as u32);
+        while tick < end {
+            let ticks = if tick == first { 3 } else { 1 };
+            let at = |tick: u32| motion(f64::from(tick) * TICK_S);
+            let (from, to) = (at(tick), at(tick + ticks));
+            for _ in 1..ticks {
+                rig.tick(Sample::Lost, Sight::IDEAL.position(from.0));
+            }
+            rig.step(from, to, to.0 - from.0);
+            let now = rig.words.iter().map(|(word, share)| {
+                (*word, TICK_S * (f64::from(tick) + share * f64::from(ticks)))
+            });
+            words.extend(now.filter(is_own));
+            tick += ticks;
+        }
+        assert_eq!(words.len(), whole.len(), "{hidden:?} hidden: {words:?}");
+        for (found, expected) in words.iter().zip(&whole) {
+            assert_eq!(found.0, expected.0);
+            near(found.1, expected.1, 1e-9);
+        }
+    }
+}
+
 /// What is left of a catch after a gap in which it began is what is left of it anyway, in both
 /// laws that decay.
 #[test]

@@ -1,12 +1,12 @@
 //! Settings that are refused: numbers out of range, and contradictions.
 
-use super::rig::timing;
+use super::rig::{near, timing};
 use crepitus_model::SettingsError;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::render::effects::clasp_knife::{ClaspKnife, ClaspKnifeSettings};
 use crepitus_model::render::effects::clonus::{Clonus, ClonusSettings};
-use crepitus_model::render::effects::cogwheel::Cogwheel;
-use crepitus_model::render::effects::lead_pipe::LeadPipe;
+use crepitus_model::render::effects::cogwheel::{Cogwheel, CogwheelSettings};
+use crepitus_model::render::effects::lead_pipe::{LeadPipe, LeadPipeSettings};
 use crepitus_model::render::effects::range_limit::{RangeLimit, RangeLimitSettings};
 use crepitus_model::render::effects::spasticity::{Spasticity, SpasticitySettings};
 use crepitus_model::render::effects::texture::{Texture, TextureSettings};
@@ -197,4 +197,39 @@ fn asperities_rise_and_are_no_steeper_than_their_spring() {
     assert!(rough(0.25, 0.75, 2.0, 0.5, 0.999 * steepest));
     assert!(!rough(0.5, 0.5, 2.0, 0.5, 1.0));
     assert!(rough(0.5, 0.499, 2.0, 0.5, 400.0));
+}
+
+#[test]
+fn the_spring_beside_a_play_counts_in_its_stiffness_and_slope() {
+    let elastic_nm_per_rad = 5.0;
+    let (pipe, wheel) = (LeadPipeSettings::default(), CogwheelSettings::default());
+    for (settings, torque_nm, presliding_deg) in [
+        (
+            EffectSettings {
+                lead_pipe: Some(LeadPipeSettings {
+                    elastic_nm_per_rad,
+                    ..pipe
+                }),
+                ..EffectSettings::default()
+            },
+            pipe.torque_nm,
+            pipe.presliding_deg,
+        ),
+        (
+            EffectSettings {
+                cogwheel: Some(CogwheelSettings {
+                    elastic_nm_per_rad,
+                    ..wheel
+                }),
+                ..EffectSettings::default()
+            },
+            wheel.torque_nm,
+            wheel.presliding_deg,
+        ),
+    ] {
+        let play = torque_nm / presliding_deg.to_radians();
+        near(settings.stiffness_nm_per_rad(None), play + 5.0, 1e-9);
+        let half_a_turn_nm = torque_nm + 5.0 * std::f64::consts::PI;
+        near(settings.torque_bound_nm(None), half_a_turn_nm, 1e-9);
+    }
 }

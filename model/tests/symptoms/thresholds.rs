@@ -2,6 +2,7 @@
 //! law says with its ≥, whichever side rounding would take.
 
 use super::rig::*;
+use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::render::Addition;
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::clasp_knife::ClaspKnifeSettings;
@@ -267,6 +268,18 @@ fn a_reflex_that_is_reset_has_been_told_nothing() {
 }
 
 #[test]
+fn a_reflex_is_let_go_of_within_the_slew_limit_and_not_beyond() {
+    let place = Position::at(131_072);
+    let mut rig = armed(with_reflex(reflex()), place);
+    near(rests(&mut rig, 131_072, 4_000), 0.25, 1e-6);
+    for tick in 1..=100 {
+        // Held for 20 ticks.
+        let left_nm = 0.25 - f64::from((tick - 20).max(0)) * SLEW_NM;
+        near(rig.tick(Sample::Lost, place), left_nm.max(0.0), 1e-6);
+    }
+}
+
+#[test]
 fn a_commit_leaves_a_reflex_what_it_was_told_and_other_muscles_nothing() {
     let count = 131_072;
     let mut rig = armed(with_reflex(reflex()), Position::at(count));
@@ -317,6 +330,48 @@ fn a_joint_that_enters_from_the_wall_itself_is_pushed_from_there() {
         let envelope_nm = beyond_rad * (60.0 + 400.0 * beyond_rad);
         near(nm, rad_s * envelope_nm, 1e-15);
     }
+}
+
+/// A count that flickers at a wall is no contact and no leave each time.
+#[test]
+fn a_wall_is_left_once_the_joint_is_out_of_it_by_more_than_noise() {
+    let sight = Sight::of_encoder(&EncoderSettings::default());
+    let wall = EffectSettings {
+        range_limit: Some(RangeLimitSettings {
+            flexion_limit_deg: 60.0,
+            ..RangeLimitSettings::default()
+        }),
+        ..EffectSettings::default()
+    };
+    let limit_rad = 60_f64.to_radians();
+    let at_wall = (limit_rad / sight.rad_per_count).ceil() as i32;
+    let mut count = at_wall - 10;
+    let mut rig = Rig::<f64>::new(wall, sight, f64::from(count) * sight.rad_per_count);
+    let mut to = |next: i32| {
+        let omega = f64::from(next - count) * sight.rad_per_count / TICK_S;
+        let shaft = ShaftStep {
+            delta_phi_rad: omega * TICK_S,
+            omega_start_rad_s: omega,
+            omega_end_rad_s: omega,
+        };
+        count = next;
+        rig.tick(Sample::Taken(shaft), Position::at(next));
+        let words = told(&rig).into_iter();
+        let words: Vec<Word> = words.map(|(word, _)| word).collect();
+        (words, rig.phase())
+    };
+    for next in at_wall - 9..at_wall {
+        assert_eq!(to(next), (vec![], None));
+    }
+    assert_eq!(to(at_wall), (vec![Word::Contact], Some("in-the-wall")));
+    let noise = (sight.flicker_rad / sight.rad_per_count) as i32;
+    assert!(noise > 0);
+    for _ in 0..3 {
+        for next in [at_wall, at_wall - noise] {
+            assert_eq!(to(next), (vec![], Some("in-the-wall")), "{next}");
+        }
+    }
+    assert_eq!(to(at_wall - noise - 2), (vec![Word::Leave], None));
 }
 
 #[test]
