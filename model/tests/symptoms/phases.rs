@@ -219,8 +219,8 @@ fn whatever_a_gap_hides_of_clonus_happens_in_its_time() {
     let motion = motion(&case);
     let end_s = 0.35;
     let is_own = |word: &(Word, f64)| !word.0.is_of_play();
-    let whole = only::<f64>(case.settings, 40.0).run(end_s, &motion).words;
-    let whole: Vec<_> = whole.into_iter().filter(is_own).collect();
+    let run = only::<f64>(case.settings, 40.0).run(end_s, &motion);
+    let whole: Vec<_> = run.words.into_iter().filter(is_own).collect();
     assert!(whole.len() >= 3, "{whole:?}");
     for (hidden, time_s) in &whole {
         let first = (time_s / TICK_S).floor() as u32 - 1;
@@ -234,7 +234,8 @@ fn whatever_a_gap_hides_of_clonus_happens_in_its_time() {
             for _ in 1..ticks {
                 rig.tick(Sample::Lost, Sight::IDEAL.position(from.0));
             }
-            rig.step(from, to, to.0 - from.0);
+            let nm = rig.step(from, to, to.0 - from.0);
+            near(nm, run.rows[(tick + ticks) as usize - 1].2, 1e-5);
             let now = rig.words.iter().map(|(word, share)| {
                 (*word, TICK_S * (f64::from(tick) + share * f64::from(ticks)))
             });
