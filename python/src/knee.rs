@@ -18,19 +18,15 @@ pub(crate) fn knee(what: &Path) -> PyResult<Knee> {
     if what.exists() && Shipped::meant_by(what).is_none() {
         return Knee::read(what).map_err(failed);
     }
-    match Shipped::find(what) {
-        Some(shipped) => shipped
-            .read(&Overrides::default())
-            .map(|scene| Knee::Scene(Box::new(scene)))
-            .map_err(failed),
-        None => {
-            let name = what.to_string_lossy();
-            let meant = similar::preset(&name).or_else(|| similar::scene(&name));
-            Err(PyValueError::new_err(format!(
-                "{name}: there is no such file, no such preset and no such scene{}: crepitus.presets() and \
-                 crepitus.scenes() list those that ship",
-                similar::question(meant)
-            )))
-        }
+    if let Some(shipped) = Shipped::find(what) {
+        let scene = shipped.read(&Overrides::default()).map_err(failed)?;
+        return Ok(Knee::Scene(Box::new(scene)));
     }
+    let name = what.to_string_lossy();
+    let meant = similar::preset(&name).or_else(|| similar::scene(&name));
+    Err(PyValueError::new_err(format!(
+        "{name}: there is no such file, no such preset and no such scene{}: crepitus.presets() and \
+         crepitus.scenes() list those that ship",
+        similar::question(meant)
+    )))
 }
