@@ -172,7 +172,7 @@ fn the_parts_of_a_first_test_cost_what_the_page_says() {
     );
 }
 
-/// What was asked for, and not reached in full, stands beside what there is.
+/// The page states by how much the required share of 90 % is exceeded at each speed.
 #[test]
 fn the_vibration_actuators_page_says_how_far_what_was_asked_for_is_met() {
     assert!(

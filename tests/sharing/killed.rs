@@ -168,7 +168,7 @@ struct Bench {
     thread: JoinHandle<Observed>,
 }
 
-/// What the simulator has seen of the torque.
+/// Torque over the whole run, as the simulator measured it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Observed {
     driven_ticks: u64,

@@ -90,19 +90,23 @@ pub(crate) fn grade_0(name: &str) -> Option<String> {
     ))
 }
 
-/// What is probably meant by a name that no preset has, as the end of a sentence: those that
-/// ship whose names contain it, in small or capital letters, or the one most like it. Empty
-/// without any.
-pub(crate) fn of_this_kind(name: &str) -> String {
-    let small = name.to_lowercase();
-    let names = preset::shipped().iter().map(|preset| preset.name.as_str());
-    let alike: Vec<&str> = names.clone().filter(|n| n.contains(&small)).collect();
-    if !small.is_empty() && !alike.is_empty() {
-        return format!("; of this kind are {}", alike.join(", "));
-    }
+/// Suggestions for an unknown preset, as the end of an error message: all that ship whose names
+/// contain this one, regardless of case, or else the most similar name. Empty if there are none.
+pub(crate) fn suggestions(name: &str) -> String {
     let files = files().unwrap_or_default();
     let own = files.iter().filter_map(|file| file.file_stem()?.to_str());
-    question(similar(names.chain(own), name))
+    suggestions_among(own, name)
+}
+
+fn suggestions_among<'n>(own: impl Iterator<Item = &'n str>, name: &str) -> String {
+    let small = name.to_lowercase();
+    let shipped = preset::shipped().iter().map(|preset| preset.name.as_str());
+    let containing: Vec<&str> = shipped.clone().filter(|n| n.contains(&small)).collect();
+    if small.is_empty() || containing.is_empty() {
+        question(similar(shipped.chain(own), name))
+    } else {
+        format!("; of this kind are {}", containing.join(", "))
+    }
 }
 
 /// All that can be read, with their files, in the order of their names; warns of the others. Without
@@ -238,14 +242,16 @@ mod tests {
 
     #[test]
     fn a_part_of_a_name_in_any_letters_leads_to_those_that_have_it() {
+        let suggested = |name| suggestions_among(["monday"].into_iter(), name);
         for part in ["mas-2", "MAS-2", "Mas-2"] {
             assert_eq!(
-                of_this_kind(part),
+                suggested(part),
                 "; of this kind are mas-2-catch, mas-2-reflex"
             );
         }
+        assert_eq!(suggested("Mondya"), " (did you mean monday?)");
         for part in ["", "nothing-like-it"] {
-            assert_eq!(of_this_kind(part), "");
+            assert_eq!(suggested(part), "");
         }
         for grade in ["mas-0", "MAS-0", "UPDRS-0", "updrs-0-cogwheel"] {
             assert!(grade_0(grade).is_some(), "{grade}");

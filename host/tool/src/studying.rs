@@ -1,5 +1,5 @@
 //! What the verbs that carry out a study share: the progress that they show,
-//! how they are interrupted, and what they were measured on.
+//! how they are interrupted, and where their times were measured.
 
 use crate::failure::Failure;
 use crate::interrupt;
@@ -40,7 +40,7 @@ pub(crate) fn host() -> String {
     format!("{} {}", std::env::consts::ARCH, std::env::consts::OS)
 }
 
-/// What times were measured on, and in which build.
+/// Computer, clock and build of the times of a study, for its page.
 pub(crate) fn measured_on(host: &str) -> String {
     let build = if cfg!(debug_assertions) {
         "a debug build: times mean little"

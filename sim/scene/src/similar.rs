@@ -1,12 +1,12 @@
-//! What a name that nobody knows is probably meant to be.
+//! "Did you mean …?": the most similar of the known names.
 
 use crate::preset;
 use crate::shipped::SHIPPED;
 
-/// Likeness, from 0 to 1, of names that are probably meant for each other.
+/// The least Jaro-Winkler similarity, from 0 to 1, of a suggestion.
 const ALIKE: f64 = 0.85;
 
-/// The name that is most like `given`, in small or capital letters, unless none is.
+/// The name that is most similar to `given`, regardless of case; `None` if no name is similar.
 pub fn similar<'n>(names: impl Iterator<Item = &'n str>, given: &str) -> Option<&'n str> {
     let given = given.to_lowercase();
     names
@@ -16,12 +16,12 @@ pub fn similar<'n>(names: impl Iterator<Item = &'n str>, given: &str) -> Option<
         .map(|(_, name)| name)
 }
 
-/// The scene that ships whose name is most like this one.
+/// The most similar name of a scene that ships.
 pub fn scene(given: &str) -> Option<&'static str> {
     similar(SHIPPED.iter().map(|scene| scene.name), given)
 }
 
-/// The preset that ships whose name is most like this one.
+/// The most similar name of a preset that ships.
 pub fn preset(given: &str) -> Option<&'static str> {
     let names = preset::shipped().iter().map(|preset| preset.name.as_str());
     similar(names, given)

@@ -133,9 +133,9 @@ impl Bounds {
         blocks * self.fade_nm >= self.added_nm
     }
 
-    /// Whether the longest ramp of parameters within these bounds has ended after this number of
-    /// blocks, whatever the drive says: torques move by the slew limit or faster. Twice as long,
-    /// as one may begin where another ends.
+    /// Whether a change of parameters has settled after this number of blocks, whatever the drive
+    /// says: after twice the longest ramp at the slew limit that these bounds allow. Twice, as one
+    /// ramp may begin where another ends.
     pub fn has_settled(&self, blocks: u32) -> bool {
         let moved_nm = self.model_torque_nm + self.added_nm + self.torque_nm;
         #[expect(

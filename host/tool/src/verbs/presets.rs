@@ -57,7 +57,7 @@ fn find(name: &str) -> Result<(Preset, Option<PathBuf>), Failure> {
 
 /// That there is no such preset, with those whose names contain it.
 fn unknown(name: &str) -> String {
-    let alike = own_presets::of_this_kind(name);
+    let alike = own_presets::suggestions(name);
     format!("no preset {name:?} ships or is your own{alike}: `crepitus presets` lists them")
 }
 

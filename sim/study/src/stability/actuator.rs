@@ -187,7 +187,7 @@ fn shake<F: Real>(
             break;
         }
         seen.steps += 1;
-        seen.torque_is::<F>(torque_nm);
+        seen.add_torque::<F>(torque_nm);
         watched.add(
             now_s,
             values.map(|value| value.unwrap_or(0.0)),

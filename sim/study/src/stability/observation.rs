@@ -117,9 +117,9 @@ impl Observation {
         f64::from_whole(self.steps) * self.step_s
     }
 
-    /// Records the torque at the end of a step, N·m, as it was computed in `F`.
+    /// Adds the torque at the end of a step, N·m, which was computed in `F`.
     #[inline]
-    pub(super) fn torque_is<F: Real>(&mut self, torque_nm: f64) {
+    pub(super) fn add_torque<F: Real>(&mut self, torque_nm: f64) {
         let moved_nm = (torque_nm - self.last_torque_nm).abs();
         self.largest_step_nm = self.largest_step_nm.max(moved_nm);
         self.last_torque_nm = torque_nm;

@@ -256,7 +256,7 @@ impl<F: Real> StepObserver<'_, F> {
         let travel_rad = Some(shaft.delta_phi_rad.to_f64())
             .filter(|travel| travel.is_finite())
             .unwrap_or(0.0);
-        seen.torque_is::<F>(torque_nm);
+        seen.add_torque::<F>(torque_nm);
         if torque_nm.to_bits() != before_nm.to_bits() {
             seen.last_change = seen.steps;
         }

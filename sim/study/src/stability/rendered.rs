@@ -107,7 +107,7 @@ fn observe<F: Real>(seen: &mut Observation, torque_nm: f64, limit_nm: f64, late_
     if seen.steps > late_step {
         seen.late_torque.add(torque_nm);
     }
-    seen.torque_is::<F>(torque_nm);
+    seen.add_torque::<F>(torque_nm);
     seen.peak = seen.peak.max(torque_nm.abs() / limit_nm);
 }
 

@@ -113,7 +113,7 @@ impl Here<'_> {
         if seen.steps > self.late_step {
             seen.late_torque.add(torque_nm);
         }
-        seen.torque_is::<F>(torque_nm);
+        seen.add_torque::<F>(torque_nm);
     }
 
     /// With the torque at the end of each step, N·m.

@@ -81,7 +81,7 @@ fn row(seen: &mut Observation, reference: &Reference<'_>, limit_nm: f64, late_st
     if seen.steps > late_step {
         seen.late_torque.add(torque_nm);
     }
-    seen.torque_is::<f64>(torque_nm);
+    seen.add_torque::<f64>(torque_nm);
 }
 
 /// Records an event, whose fraction is its time.

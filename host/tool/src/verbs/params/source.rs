@@ -40,9 +40,9 @@ impl Source {
             return Err(Failure::Input(text));
         }
         if !is_summary && shipped.is_none() {
-            let of_this_kind = name.map(own_presets::of_this_kind);
-            let alike = of_this_kind
-                .filter(|presets| !presets.is_empty())
+            let presets = name.map(own_presets::suggestions);
+            let alike = presets
+                .filter(|text| !text.is_empty())
                 .unwrap_or_else(|| question(name.and_then(similar::scene)));
             return Err(Failure::Input(format!(
                 "{}: there is no such file, no such preset and no such scene{alike}: `crepitus presets` and \
