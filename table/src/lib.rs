@@ -74,7 +74,7 @@ impl<'r, R> Table<'r, R> {
     /// Adds a column for files; the unit is part of the name.
     #[must_use]
     pub fn column<C: Into<Cell>>(self, name: &'static str, cell: impl Fn(&'r R) -> C) -> Self {
-        self.push(Some(name), None, cell)
+        self.push(Some(name), None, &|row| cell(row).into())
     }
 
     /// Adds a column for people only. Text in it is aligned to the left;
@@ -85,16 +85,17 @@ impl<'r, R> Table<'r, R> {
         heading: impl Into<String>,
         cell: impl Fn(&'r R) -> C,
     ) -> Self {
-        self.push(None, Some(heading.into()), cell)
+        self.push(None, Some(heading.into()), &|row| cell(row).into())
     }
 
-    fn push<C: Into<Cell>>(
+    /// Not generic over the cell: hundreds of columns would be compiled one by one.
+    fn push(
         mut self,
         name: Option<&'static str>,
         heading: Option<String>,
-        cell: impl Fn(&'r R) -> C,
+        cell: &dyn Fn(&'r R) -> Cell,
     ) -> Self {
-        let cells: Vec<Cell> = self.rows.iter().map(|row| cell(row).into()).collect();
+        let cells: Vec<Cell> = self.rows.iter().map(cell).collect();
         self.columns.push(Column {
             name,
             heading,

@@ -117,11 +117,10 @@ where
         &mut self,
         seen: &Seen<F>,
         on_event: &mut dyn FnMut(Event<F>),
-        on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
+        mut on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
     ) -> Shown<F> {
-        self.tick_observed(seen, on_event, &mut |effect, change| {
-            on_change(effect, change);
-        })
+        // Not a closure: the effects would be compiled for that of each pipeline.
+        self.tick_observed(seen, on_event, &mut on_change)
     }
 
     fn rest(&mut self, place: &Position<F>) {
