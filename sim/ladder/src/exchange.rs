@@ -108,7 +108,7 @@ impl<'a> Exchange<'a> {
     }
 
     /// Marks the command as done; releases all that was written for it.
-    pub(crate) fn done(&self) {
+    pub fn done(&self) {
         if let Some(word) = self.0.first() {
             word.store(0, Release);
         }
@@ -128,7 +128,7 @@ impl<'a> Exchange<'a> {
     }
 
     /// Sets the output of step `n`.
-    pub(crate) fn set_output(&self, n: usize, output: &Output) {
+    pub fn set_output(&self, n: usize, output: &Output) {
         let at = STEPS + STEP_WORDS * n;
         for (word, value) in (at..).zip(output) {
             self.set(word, *value);

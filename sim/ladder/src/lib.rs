@@ -41,13 +41,16 @@ extern crate std;
 
 pub mod cost;
 pub mod exchange;
+#[cfg(feature = "serve")]
 pub mod measured;
 pub mod plan;
+#[cfg(feature = "serve")]
 pub mod serve;
 pub mod subject;
 
 pub use cost::{Call, Cost};
 pub use exchange::Exchange;
 pub use plan::Plan;
+#[cfg(feature = "serve")]
 pub use serve::serve;
 pub use subject::Subject;
