@@ -250,6 +250,66 @@ fn whatever_a_gap_hides_of_clonus_happens_in_its_time() {
     }
 }
 
+/// With the first beat three ticks before the muscle is let go of, or three ticks after.
+#[test]
+fn a_beat_and_the_end_of_a_stretch_within_one_gap_come_in_their_order() {
+    let settings = EffectSettings {
+        clonus: Some(ClonusSettings::default()),
+        ..EffectSettings::default()
+    };
+    // From 59 deg it passes 60 deg after 1/130 s, and the delay is 0.05 s.
+    let beat_s = 1.0 / 130.0 + 0.05;
+    for (ticks_later, told) in [
+        (3.0, &[Word::Start, Word::Beat, Word::Stop][..]),
+        (-3.0, &[Word::Start, Word::Stop][..]),
+    ] {
+        let back_s = beat_s + ticks_later * TICK_S;
+        let motion = |t: f64| {
+            let (out, back) = (59.0 + 130.0 * t, 55.0 + 200.0 * (back_s - t));
+            let (deg, deg_s) = if out < back {
+                (out, 130.0)
+            } else {
+                (back, -200.0)
+            };
+            (f64::to_radians(deg), f64::to_radians(deg_s))
+        };
+        let run = only::<f64>(settings, 59.0).run(0.07, motion);
+        let whole: Vec<_> = run
+            .words
+            .iter()
+            .filter(|word| !word.0.is_of_play())
+            .collect();
+        assert!(
+            whole.iter().map(|word| word.0).eq(told.iter().copied()),
+            "{whole:?}"
+        );
+
+        let mut rig = only::<f64>(settings, 59.0);
+        let first = (beat_s / TICK_S) as u32 - 6;
+        rig.run(f64::from(first) * TICK_S, motion);
+        let [from, to] = [first, first + 12].map(|tick| motion(f64::from(tick) * TICK_S));
+        for _ in 1..12 {
+            rig.tick(Sample::Lost, Sight::IDEAL.position(from.0));
+        }
+        let nm = rig.step(from, to, to.0 - from.0);
+        near(nm, run.rows[first as usize + 11].2, 1e-5);
+        let hidden: Vec<_> = rig
+            .words
+            .iter()
+            .filter(|word| !word.0.is_of_play())
+            .collect();
+        assert_eq!(hidden.len(), told.len() - 1, "{hidden:?}");
+        for (found, expected) in hidden.iter().zip(&whole[1..]) {
+            assert_eq!(found.0, expected.0);
+            near(
+                (f64::from(first) + 12.0 * found.1) * TICK_S,
+                expected.1,
+                1e-9,
+            );
+        }
+    }
+}
+
 /// What is left of a catch after a gap in which it began is what is left of it anyway, in both
 /// laws that decay.
 #[test]
