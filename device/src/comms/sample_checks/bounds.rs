@@ -133,9 +133,9 @@ impl Bounds {
         blocks * self.fade_nm >= self.added_nm
     }
 
-    /// Whether a change of parameters has settled after this number of blocks, whatever the drive
-    /// says: after twice the longest ramp at the slew limit that these bounds allow. Twice, as one
-    /// ramp may begin where another ends.
+    /// Whether this many blocks are enough for a change of parameters to settle: twice the time of
+    /// the longest ramp at the slew limit that these bounds allow, as one ramp may begin where
+    /// another ends. Does not depend on what the drive reports.
     pub fn has_settled(&self, blocks: u32) -> bool {
         let moved_nm = self.model_torque_nm + self.added_nm + self.torque_nm;
         #[expect(
