@@ -43,6 +43,7 @@ pub struct Client<T> {
     pub(crate) watch: Watch,
     pub(crate) telemetry: Telemetry,
     pub(crate) events: VecDeque<Event>,
+    pub(crate) pace: Pace,
     /// The request that waits for its reply.
     pub(crate) pending_request: Option<RequestKind>,
     /// The error that ended the connection.
@@ -73,6 +74,16 @@ pub(crate) struct Watch {
     /// Time of an additional request.
     pub(crate) due_at: Option<Duration>,
     pub(crate) known: Option<Status>,
+}
+
+/// Receives, while events wait for the program, for as long as the program takes for events. On a computer
+/// that is slow at receiving, a pump would otherwise do little else.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pace {
+    /// When the last pump returned.
+    pub(crate) pumped_at: Duration,
+    /// For how much longer than that it has received.
+    pub(crate) ahead: Duration,
 }
 
 /// The subscription.
@@ -175,6 +186,7 @@ impl<T: Transport> Client<T> {
             watch: Watch::default(),
             telemetry: Telemetry::default(),
             events: VecDeque::new(),
+            pace: Pace::default(),
             pending_request: None,
             loss: None,
             round_trips: RoundTrips::default(),
@@ -247,13 +259,14 @@ impl<T: Transport> Client<T> {
         } else {
             None
         };
-        // With what came before the answer. A slow link lags, and loses much, but is not silent.
+        // With what came before the answer, or instead of it. A slow link lags, and loses much, but is
+        // not silent.
         let silence = self.now().saturating_sub(self.telemetry.heard_at);
-        let next_tick = self.accounting()?.next_tick();
-        let samples = status.map(|status| status.tick.saturating_sub(next_tick));
-        if samples.is_some() && silence < SHORT_SILENCE {
+        if self.is_connected() && silence < SHORT_SILENCE {
             return None;
         }
+        let next_tick = self.accounting()?.next_tick();
+        let samples = status.map(|status| status.tick.saturating_sub(next_tick));
         (samples.is_none_or(|samples| samples > UNDER_WAY)).then_some(Unheard { silence, samples })
     }
 

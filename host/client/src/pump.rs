@@ -43,6 +43,12 @@ impl<T: Transport> Client<T> {
     /// # Errors
     /// [`Error::NotConnected`], after [`Event::Lost`] was returned.
     pub fn pump(&mut self, patience: Duration) -> Result<Option<Event>, Error> {
+        let event = self.next_event(patience);
+        self.pace.pumped_at = self.now();
+        event
+    }
+
+    fn next_event(&mut self, patience: Duration) -> Result<Option<Event>, Error> {
         let until = self.now() + patience;
         loop {
             let taken = self.receive_pending();
@@ -60,11 +66,17 @@ impl<T: Transport> Client<T> {
         }
     }
 
-    /// Receives without waiting.
+    /// Receives without waiting, at the [pace](crate::client::Pace) of the program.
     fn receive_pending(&mut self) -> Result<(), Error> {
         self.connected()?;
         self.renew()?;
         self.look()?;
+        let began = self.now();
+        let program_took = began.saturating_sub(self.pace.pumped_at);
+        self.pace.ahead = self.pace.ahead.saturating_sub(program_took);
+        if !self.events.is_empty() && !self.pace.ahead.is_zero() {
+            return Ok(());
+        }
         for _ in 0..AT_ONCE {
             match self.wire.next(Duration::ZERO) {
                 Ok(None) => break,
@@ -74,6 +86,11 @@ impl<T: Transport> Client<T> {
                     }
                 }
                 Err(error) => return Err(self.failed(error)),
+            }
+            let took = self.now().saturating_sub(began);
+            self.pace.ahead = took.saturating_sub(program_took);
+            if !self.events.is_empty() && !self.pace.ahead.is_zero() {
+                break;
             }
         }
         self.listen_for_silence();

@@ -131,6 +131,35 @@ fn a_slow_host_gets_the_count_of_lost_samples() {
     assert_eq!(accounting.gap_count(), 1);
 }
 
+/// It receives half of what the device sends, and the system's buffer is full all the time.
+#[test]
+fn a_computer_that_is_slow_at_receiving_hands_out_all_that_it_receives() {
+    let (shared, mut client) = connected();
+    client.subscribe().unwrap();
+    shared.borrow_mut().room = 65_536;
+    client.transport_mut().bytes_per_ms = Some(172);
+    let blocks = blocks_for(&mut client, ms(2_000)).len();
+    assert!((850..1_050).contains(&blocks), "{blocks}");
+    assert_eq!(client.unheard(), None);
+    check_books(&client);
+}
+
+/// What it asks at the end is answered more than a second later, behind all the blocks.
+#[test]
+fn a_link_that_lags_by_more_than_a_second_is_not_one_that_has_stopped() {
+    let (shared, mut client) = connected();
+    client.subscribe().unwrap();
+    shared.borrow_mut().room = 65_536;
+    client.transport_mut().bytes_per_ms = Some(50);
+    pump_for(&mut client, ms(2_000));
+    assert_eq!(client.unheard(), None);
+    client.transport_mut().wait(ms(200));
+    shared.borrow_mut().link_is_cut = true;
+    client.transport_mut().bytes_per_ms = None;
+    pump_for(&mut client, ms(500));
+    assert!(client.unheard().is_some(), "nothing is heard any more");
+}
+
 /// What it hears is old, and what the device dropped since then is in no block yet.
 #[test]
 fn a_link_that_lags_is_not_one_that_has_stopped() {

@@ -10,6 +10,8 @@ pub struct Port {
     device: Shared,
     host: usize,
     is_open: bool,
+    /// Of a slow computer: how much it receives in a millisecond, which goes by meanwhile.
+    pub bytes_per_ms: Option<usize>,
 }
 
 impl Port {
@@ -18,6 +20,7 @@ impl Port {
             device: device.clone(),
             host: device.borrow_mut().add_host(),
             is_open: true,
+            bytes_per_ms: None,
         }
     }
 
@@ -55,6 +58,9 @@ impl Transport for Port {
             if count > 0 {
                 for (place, byte) in buffer.iter_mut().zip(waiting.drain(..count)) {
                     *place = byte;
+                }
+                for _ in 0..self.bytes_per_ms.map_or(0, |in_a_ms| count / in_a_ms) {
+                    device.millisecond();
                 }
                 return Ok(count);
             }
