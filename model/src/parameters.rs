@@ -1,4 +1,4 @@
-//! How parameters are declared, once each, with `settings!`: scene files, the
+//! Declaration of parameters, once each, with `settings!`: scene files, the
 //! command line, the device's wire and the documents read these tables.
 
 use core::cmp::Ordering;
@@ -32,7 +32,7 @@ pub struct Parameter {
     pub group: &'static str,
     /// Number or choice.
     pub kind: Kind,
-    /// When it may change.
+    /// Condition under which it may change.
     pub when: When,
 }
 
@@ -58,7 +58,7 @@ pub struct Choice {
     pub meaning: &'static str,
 }
 
-/// When a parameter may change.
+/// Condition under which a parameter may change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum When {
     /// Always; active values move there within the slew limit.
@@ -92,7 +92,7 @@ impl Parameter {
         }
     }
 
-    /// Whether this value is allowed; NaN never is.
+    /// Returns whether this value is allowed; NaN never is.
     pub fn allows(&self, value: f64) -> bool {
         match self.kind {
             Kind::Number(spec) => spec.allows(value),
@@ -104,7 +104,7 @@ impl Parameter {
 }
 
 impl ParameterSpec {
-    /// Whether this value is allowed; NaN never is.
+    /// Returns whether this value is allowed; NaN never is.
     pub fn allows(&self, value: f64) -> bool {
         value >= self.min && value <= self.max
     }
@@ -113,7 +113,7 @@ impl ParameterSpec {
 /// A number outside its range, or NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutOfRange {
-    /// Which one, with its range.
+    /// The parameter, with its range.
     pub parameter: &'static ParameterSpec,
     /// The rejected value.
     pub value: f64,
@@ -134,7 +134,7 @@ pub trait Tabled<const N: usize>: Copy {
     /// The numbers, to be changed, in the order of the table.
     fn values_mut(&mut self) -> [&mut f64; N];
 
-    /// From numbers in the order of the table, with choices at their defaults;
+    /// Settings from numbers in the order of the table, with choices at their defaults;
     /// not checked.
     fn of(values: [f64; N]) -> Self;
 
@@ -171,7 +171,7 @@ pub trait Tabled<const N: usize>: Copy {
 
 /// Values of a device's parameters, by id.
 pub trait Source {
-    /// Whether a choice is not the first of its names: `off` is the first.
+    /// Returns whether a choice is not the first of its names: `off` is the first.
     fn is_on(&self, id: u8) -> bool;
 
     /// Settings, as far as a device has them; the rest at its defaults.
@@ -369,7 +369,7 @@ macro_rules! settings {
 
 pub(crate) use settings;
 
-/// Whether two names are the same, at compile time.
+/// Returns whether two names are the same, at compile time.
 pub const fn same(a: &str, b: &str) -> bool {
     let (mut a, mut b) = (a.as_bytes(), b.as_bytes());
     while let ([x, more_a @ ..], [y, more_b @ ..]) = (a, b) {
@@ -429,7 +429,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// What holds for the table of any settings.
+    /// Asserts what holds for the table of any settings.
     pub(crate) fn is_its_table_and_is_held_to_it<const N: usize, T: Tabled<N>>() {
         let defaults = T::defaults().values();
         assert_eq!(T::defaults().validate(), Ok(()));

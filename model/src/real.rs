@@ -58,11 +58,11 @@ pub trait Real:
     /// crossing, and such a time is known to the root of the rounding only:
     /// see [`StepCoefficients::touch_slack_nm`](crate::StepCoefficients::touch_slack_nm).
     const TOUCH_SLACK: Self;
-    /// Below this a number is at rest. Far below anything that matters, and
+    /// Magnitude below which a number is at rest. Far below anything that matters, and
     /// far above the subnormal numbers that a decay would otherwise end in,
     /// which some processors compute with slowly.
     const AT_REST: Self;
-    /// With 24 bits: short series do.
+    /// Whether a number has 24 bits: short series do.
     const IS_SINGLE: bool;
     /// Name in scene files: `f32` or `f64`.
     const NAME: &'static str;

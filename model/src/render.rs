@@ -1,4 +1,4 @@
-//! What a device renders: one pipeline from a sample of the shaft to a torque.
+//! Rendering on a device: one pipeline from a sample of the shaft to a torque.
 //!
 //! ```text
 //!            Check          Symptom                     Addition             Limits
@@ -31,7 +31,7 @@ use effects::{Added, Observe, Phases};
 use input_check::{Checked, Sample};
 use position::Position;
 
-/// Why the torque shown is not the one that the model asks for. The numbers
+/// Reason why the torque shown is not the one that the model asks for. The numbers
 /// are those of the wire, where the motor has 3 and 4.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
@@ -68,15 +68,15 @@ pub struct Shown<F> {
     /// Voltage at the coil of that actuator, V: V > 0 pushes the shell towards growing
     /// angle.
     pub coil_v: F,
-    /// What each effect besides the joint adds, N·m or V.
+    /// Contribution of each effect besides the joint, N·m or V.
     pub added: Added<F>,
     /// The phase of each.
     pub phases: Phases,
-    /// What the stick-slip object does; stick without one.
+    /// Phase of the stick-slip object; stick without one.
     pub phase: Phase,
     /// Parameters are on their way.
     pub settling: bool,
-    /// Why it is not more.
+    /// Reason why the torque shown is not more.
     pub limit: Limit,
 }
 
@@ -98,7 +98,7 @@ impl<F: Real> Shown<F> {
         }
     }
 
-    /// Nothing.
+    /// Output that shows nothing.
     #[inline]
     pub fn nothing() -> Self {
         Self {
@@ -117,14 +117,14 @@ impl<F: Real> Shown<F> {
     }
 }
 
-/// What a tick knows of the shaft.
+/// Knowledge of the shaft in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen<F> {
     /// Its motion since the last sample that was taken.
     pub sample: Sample<F>,
     /// Its velocity as far as known, rad/s; also where this sample is lost.
     pub omega_rad_s: F,
-    /// Where the joint is, or was seen last.
+    /// Place of the joint, or the place where it was seen last.
     pub place: Position<F>,
     /// The motor is driven: symptoms act.
     pub is_driven: bool,
@@ -152,15 +152,15 @@ pub trait Symptom<F> {
 /// The torque of symptoms, N·m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torque<F> {
-    /// What is to be shown.
+    /// Torque to be shown.
     pub shown_nm: F,
-    /// What it would be without a guard.
+    /// Torque that would be shown without a guard.
     pub model_nm: F,
 }
 
 /// Adds to the torque of the joint.
 pub trait Addition<F> {
-    /// As at arming, at this place of the joint.
+    /// Puts it at rest as at arming, at this place of the joint.
     fn rest(&mut self, place: &Position<F>);
 
     /// One tick.
@@ -186,7 +186,7 @@ pub trait Limits<F> {
 pub struct Pipeline<F, I, S, E = (), L = ()> {
     /// The check of its input.
     pub check: I,
-    /// What it may not do.
+    /// Limits of its torque.
     pub limits: L,
     /// The symptoms.
     pub symptoms: S,
@@ -196,7 +196,7 @@ pub struct Pipeline<F, I, S, E = (), L = ()> {
 }
 
 impl<F: Real, I: Check<F>, S: Symptom<F>, E: Addition<F>, L: Limits<F>> Pipeline<F, I, S, E, L> {
-    /// Of these stages.
+    /// Pipeline of these stages.
     pub fn new(check: I, symptoms: S, effects: E, limits: L) -> Self {
         Self {
             check,

@@ -54,7 +54,7 @@ crate::named! {
 }
 
 impl Solver {
-    /// Why this rung has no meaning under a convention, if it has none.
+    /// Reason why this rung has no meaning under a convention; `None` where it has a meaning.
     pub fn refusal(self, convention: Convention) -> Option<&'static str> {
         match (self, convention) {
             (
@@ -82,7 +82,7 @@ impl Solver {
         }
     }
 
-    /// Why this rung cannot compute in f32, if it cannot.
+    /// Reason why this rung cannot compute in f32; `None` if it can.
     pub fn single_refusal(self) -> Option<&'static str> {
         (self == Self::ExactHermite).then_some(
             "the shaft's acceleration comes from its travel over the step squared; in f32 rounding makes \
@@ -91,13 +91,13 @@ impl Solver {
         )
     }
 
-    /// Why this rung cannot compute in F under a convention, if it cannot.
+    /// Reason why this rung cannot compute in F under a convention; `None` if it can.
     pub fn refusal_in<F: Real>(self, convention: Convention) -> Option<&'static str> {
         self.refusal(convention)
             .or_else(|| self.single_refusal().filter(|_| F::IS_SINGLE))
     }
 
-    /// Whether this rung needs the prescribed motion itself: an encoder's
+    /// Returns whether this rung needs the prescribed motion itself: an encoder's
     /// counts, or the rounding of a plant's integration, it would take for
     /// acceleration.
     pub fn needs_exact_motion(self) -> bool {

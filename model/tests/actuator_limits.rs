@@ -1,4 +1,4 @@
-//! What the limits of the vibration actuator promise, for any torque.
+//! Promises of the limits of the vibration actuator, for any torque.
 
 use crepitus_model::parameters::Tabled;
 use crepitus_model::render::effects::vibration_actuator::{
@@ -181,7 +181,7 @@ impl Coil {
 #[test]
 fn limits_take_what_the_module_says_of_a_coil_of_other_code() {
     const SMALL: f64 = 1e-4;
-    /// From where on, as a share of a limit.
+    /// Share of a limit from which on it reduces the command.
     const BEGINS_AT: f64 = 0.8;
     let warm = VibrationActuatorSettings {
         gain: 2.0,

@@ -1,4 +1,4 @@
-//! What the drive adds to the joint's torque, and how its current follows:
+//! Contribution of the drive to the joint's torque, and response of its current:
 //! laws that hold for any motion and any input.
 
 #![allow(
@@ -71,7 +71,7 @@ struct Accounting {
 }
 
 impl Accounting {
-    /// With a torque that acts this many ticks late.
+    /// Returns an empty account of a torque that acts this many ticks late.
     fn new(late: usize, refill_w: f64) -> Self {
         Self {
             on_the_way_nm: vec![0.0; late + 1],
@@ -177,7 +177,7 @@ fn without_a_refill_the_tank_is_all_there_is() {
     assert!(got <= s.budget_j && got > 0.97 * s.budget_j, "{got}");
 }
 
-/// What strikes the bone.
+/// Cause of a strike on the bone.
 #[derive(Clone, Copy, PartialEq)]
 enum Struck {
     ByEvents,
@@ -193,7 +193,7 @@ struct Crepitus {
 }
 
 impl Crepitus {
-    /// Of the torque without and with the ringing.
+    /// Amplitudes of the torque without and with the ringing.
     fn amplitudes(&self, hertz: f64) -> (f64, f64) {
         let shaped: Vec<f64> = self
             .torque_nm
@@ -211,7 +211,7 @@ impl Crepitus {
     }
 }
 
-/// After a second to settle.
+/// Runs the joint with a bone at a speed; records it after a second to settle.
 fn crepitus(omega: f64, seconds: f64, struck: Struck) -> Crepitus {
     let coefficients =
         StepCoefficients::<f64>::new(&Settings::default().validate().unwrap(), TICK_S).unwrap();

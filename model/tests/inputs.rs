@@ -32,7 +32,7 @@ fn good<F: Real>() -> Sample<F> {
     Sample::Taken(step(OMEGA * TICK_S, OMEGA, OMEGA))
 }
 
-/// What no shaft can have done.
+/// Samples of what no shaft can have done.
 fn impossible<F: Real>() -> Vec<Sample<F>> {
     let (nan, inf) = (f64::NAN, f64::INFINITY);
     let d = OMEGA * TICK_S;

@@ -1,5 +1,5 @@
-//! What must not matter: when a motion begins, and how it is cut into steps.
-//! And what must never happen, however long one waits.
+//! Independence from when a motion begins and from how it is cut into steps,
+//! and failures that must never happen, however long one waits.
 
 #![allow(clippy::cast_precision_loss, reason = "small numbers")]
 

@@ -1,4 +1,4 @@
-//! What planted faults found untested: numbers that only their last digits, or
+//! Cases that planted faults found untested: numbers that only their last digits, or
 //! a gap, tell apart.
 #![allow(missing_docs)]
 

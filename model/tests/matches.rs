@@ -1,4 +1,4 @@
-//! How a slip ends under `paper` and `physical`: in stick where the static
+//! End of a slip under `paper` and `physical`: in stick where the static
 //! limit can hold the object, in a slip of the other sense where it cannot.
 
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
@@ -114,7 +114,7 @@ fn in_a_slip_the_object_swings_freely_from_where_it_broke() {
     }
 }
 
-/// How a slip must end whose hand falls to rest within 10 ms, and from 24 ms
+/// Required end of a slip whose hand falls to rest within 10 ms, and from 24 ms
 /// on, just before the object has swung back as far as it can, accelerates.
 struct End {
     acceleration: f64,

@@ -1,4 +1,4 @@
-//! What each rung's accuracy is, measured: orders of convergence at a constant
+//! Measured accuracy of each rung: orders of convergence at a constant
 //! 0.988 rad/s under `physical`, the floor of f32, and the loss of the effect
 //! under implicit Euler.
 

@@ -1,4 +1,4 @@
-//! What it does to the energy of a hand to show not the torque of the tick but
+//! Effect on the energy of a hand of showing not the torque of the tick but
 //! what the joint is expected to have next: is a prediction worth its risk?
 //!
 //! | shown | torque |
@@ -33,7 +33,7 @@ use crepitus_model::{
 
 const TICK_S: f64 = 5e-5;
 const DELAYS: [usize; 3] = [0, 1, 2];
-/// How long a hand moves, s.
+/// Duration of a hand's motion, s.
 const SECONDS: f64 = 0.4;
 
 /// The shaft as the joint measures it.

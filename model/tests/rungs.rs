@@ -90,7 +90,7 @@ fn run(settings: &Validated<Settings>, solver: Solver, velocity: Velocity) -> Se
     with_joint::<f64, _>(settings, solver, STEP_S, velocity(0.0), Run(velocity)).unwrap()
 }
 
-/// How far an event of a rung may be off after a second, in steps.
+/// Allowed error of an event of a rung after a second, in steps.
 fn steps_off(solver: Solver) -> f64 {
     match solver {
         // Their damping, or its opposite, shifts every match.

@@ -1,4 +1,4 @@
-//! What a stick shows, and when it breaks: the spring alone under `frozen` and
+//! Torque that a stick shows, and time of its break: the spring alone under `frozen` and
 //! `paper`, with the object's inertia and damping under `physical`.
 
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
@@ -90,7 +90,7 @@ fn rungs(convention: Convention) -> impl Iterator<Item = Solver> {
     Solver::ALL.into_iter().filter(has_meaning)
 }
 
-/// From this velocity with this acceleration.
+/// Steps of a shaft from this velocity with this acceleration.
 fn accelerating(omega: f64, omega_dot: f64, step_s: f64, steps: u32) -> Vec<ShaftStep<f64>> {
     (0..steps)
         .map(|n| {
@@ -245,7 +245,7 @@ struct Found {
 }
 
 impl Definition {
-    /// By how much a break in this sense is still missed, N·m, at `time_s`
+    /// Torque by which a break in this sense is still missed, N·m, at `time_s`
     /// into a step that began with the spring at `theta`.
     fn missing(&self, step: &ShaftStep<f64>, theta: f64, time_s: f64, sign: f64) -> f64 {
         let p = &self.settings.parameters;

@@ -1,5 +1,5 @@
 //! Parameters that put an event exactly on a limit, where rounding decides
-//! unless it is told not to: Tk = 0 ends every slip at −Ts, Ts = Tk breaks
+//! unless the code prevents it: Tk = 0 ends every slip at −Ts, Ts = Tk breaks
 //! every stick where it begins.
 
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};

@@ -9,7 +9,7 @@
 //! rest, so that what the coil answers dies out within the recording.
 //!
 //! The drive and the host run this code. Its voltages have the same bits
-//! everywhere, so the host knows the voltage of every tick without being told.
+//! everywhere, so the host knows the voltage of every tick without a report of it.
 
 use crate::joint::SettingsError;
 use crate::real::{Real, single};
@@ -33,7 +33,7 @@ pub const GREATEST_V: f32 = 12.0;
 /// Share of the sweep over which it fades, at either end.
 const FADE_SHARE: f32 = 1.0 / 32.0;
 
-/// What is played.
+/// Settings of a chirp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChirpSettings {
     /// A, V: above 0, up to [`GREATEST_V`].
@@ -94,7 +94,7 @@ impl ChirpSettings {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chirp {
     amplitude_v: f32,
-    /// Of a period, 0 to 1.
+    /// Phase as part of a period, 0 to 1.
     turns: f32,
     frequency_hz: f32,
     /// Growth of the frequency in a tick, relative.
@@ -151,7 +151,7 @@ impl Chirp {
         share * share * (3.0 - 2.0 * share)
     }
 
-    /// Whether all of it has been played.
+    /// Returns whether all of it has been played.
     pub fn is_over(&self) -> bool {
         self.played_ticks >= self.duration_ticks
     }

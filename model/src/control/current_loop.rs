@@ -210,7 +210,7 @@ impl<F: Real> CurrentLoop<F> {
         self.limited_by = None;
     }
 
-    /// What limited the last tick that had its measurement.
+    /// Limit that acted in the last tick that had its measurement.
     pub fn limited_by(&self) -> Option<Limit> {
         self.limited_by
     }

@@ -50,7 +50,7 @@ pub struct EnergyObserver<F> {
 }
 
 impl<F: Real> EnergyObserver<F> {
-    /// For a joint with these numbers whose torque acts `delay_ticks` late, at
+    /// Observer for a joint with these numbers whose torque acts `delay_ticks` late, at
     /// most [`MOST_DELAY_TICKS`].
     pub fn new(coefficients: &StepCoefficients<F>, delay_ticks: usize) -> Self {
         let delay_ticks = delay_ticks.min(MOST_DELAY_TICKS);
@@ -61,7 +61,7 @@ impl<F: Real> EnergyObserver<F> {
         }
     }
 
-    /// For a joint with these numbers whose torque acts `lag_ticks` late on
+    /// Observer for a joint with these numbers whose torque acts `lag_ticks` late on
     /// average; the work of what acts is given to [`Self::acted`].
     pub fn behind_a_lag(coefficients: &StepCoefficients<F>, lag_ticks: F) -> Self {
         Self {
@@ -86,7 +86,7 @@ impl<F: Real> EnergyObserver<F> {
         self.delayed(delta_phi_rad, torque_nm, true);
     }
 
-    /// As [`Self::tick`], but no sample was taken at the end of the tick.
+    /// [`Self::tick`] without a sample at the end of the tick.
     pub fn tick_unseen(&mut self, delta_phi_rad: F, torque_nm: F) {
         self.delayed(delta_phi_rad, torque_nm, false);
     }

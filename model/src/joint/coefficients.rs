@@ -223,7 +223,7 @@ impl<F: Real> StepCoefficients<F> {
         F::TOUCH_SLACK * (self.static_nm + self.impedance * omega_rad_s.abs())
     }
 
-    /// Whether a shaft that moves by `delta_phi_rad` in a step goes further than a
+    /// Returns whether a shaft that moves by `delta_phi_rad` in a step goes further than a
     /// whole stick lasts,
     /// 2(Ts − Tk)/kr: sticks may then begin and end within one step, and a
     /// solver that looks only at its ends does not see them.

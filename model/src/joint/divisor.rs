@@ -2,7 +2,7 @@
 
 use crate::real::Real;
 
-/// What divides many: exactly, or as a product with the reciprocal.
+/// Divides many numbers by the same one: exactly, or as a product with the reciprocal.
 pub(crate) trait Divisor<F> {
     /// Whether everything is rounded as little as possible.
     const IS_EXACT: bool;

@@ -6,7 +6,7 @@ use crate::real::Real;
 /// One event inside a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event<F> {
-    /// What happened.
+    /// Kind of the event.
     pub kind: EventKind,
     /// When: the fraction of the step that had passed, in [0, 1].
     pub fraction: F,

@@ -1,7 +1,7 @@
 //! The imaginary object while it slips: a free oscillator, solved exactly.
 //!
 //! During a slip the friction torque is the constant s·Tk, so with
-//! x = θ − s·Tk/kr the object obeys J·ẍ + c·ẋ + kr·x = 0. With a = c/2J and
+//! x = θ − s·Tk/kr the object follows J·ẍ + c·ẋ + kr·x = 0. With a = c/2J and
 //! D = ωn² − a² its motion over a time u is linear in (x, v = ẋ):
 //!
 //! ```text
@@ -49,12 +49,12 @@ pub struct Transition<F> {
     vv: F,
 }
 
-/// Within this angle, squared, eight terms of each series are exact in f64, and
+/// Largest square of an angle at which eight terms of each series are exact in f64, and
 /// four or five in f32.
 const SERIES_ANGLE_SQUARED: f64 = 0.3;
 
 impl<F: Real> Oscillator<F> {
-    /// From kr, J and c.
+    /// Oscillator from kr, J and c.
     pub(crate) fn new<D: Divisor<F>>(stiffness: F, inertia: F, damping: F) -> Self {
         let per_inertia = D::new(inertia);
         let omega_n_squared = per_inertia.of(stiffness);
@@ -73,7 +73,7 @@ impl<F: Real> Oscillator<F> {
         }
     }
 
-    /// From parameters; computed in f64 and rounded once.
+    /// Oscillator from parameters; computed in f64 and rounded once.
     pub fn of(parameters: &Parameters) -> Self {
         let exact = Oscillator::<f64>::new::<Exact<f64>>(
             parameters.stiffness_nm_per_rad,
@@ -321,7 +321,7 @@ mod tests {
         assert!((a.xx + 1.0 - c).abs() < 3e-16 && (a.xv * 200.0 - s).abs() < 3e-16);
     }
 
-    /// By the series, where the short way is as exact, and by sine and cosine.
+    /// Transitions by the series, where the short way is as exact, and by sine and cosine.
     #[test]
     fn without_damping_nothing_is_computed_for_it() {
         let [free, damped] = [0.0, 0.02].map(|ratio| Oscillator::<Counted>::of(&with(ratio).0));

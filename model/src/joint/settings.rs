@@ -12,7 +12,7 @@ pub const LONGEST_STEP_S: f64 = 1.0;
 pub const MOST_STIFFNESS_NM_PER_RAD: f64 = 1200.0;
 
 crate::named! {
-    /// How a slip ends. The paper admits three readings; the book's model page
+    /// Convention for the end of a slip. The paper admits three readings; the book's model page
     /// compares them.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum Convention {
@@ -23,7 +23,7 @@ crate::named! {
         Frozen => "frozen",
         /// Eqs. (7)–(8): the stick torque is kr·θ, a slip ends when θ̇ = Ω(t).
         Paper => "paper",
-        /// As `Paper`, with the object's inertia and damping in the stick torque
+        /// `Paper` with the object's inertia and damping in the stick torque
         /// (kr·θ + J·Ω̇ + c·Ω): conserves energy to rounding.
         Physical => "physical",
     }
@@ -47,9 +47,9 @@ crate::named! {
 pub struct Settings {
     /// The numbers.
     pub parameters: Parameters,
-    /// How a slip ends.
+    /// Convention for the end of a slip.
     pub convention: Convention,
-    /// How a stick begins.
+    /// Torque with which a stick begins after a slip.
     pub restart: Restart,
 }
 
@@ -71,7 +71,7 @@ impl<T> core::ops::Deref for Validated<T> {
 pub enum SettingsError {
     /// A number is outside its range, or not a number at all.
     OutOfRange {
-        /// Which one, with its range.
+        /// The parameter, with its range.
         parameter: &'static ParameterSpec,
         /// The rejected value.
         value: f64,
@@ -97,12 +97,12 @@ pub enum SettingsError {
     Solver {
         /// Its name.
         solver: &'static str,
-        /// Why.
+        /// Reason.
         reason: &'static str,
     },
     /// Settings that exclude each other.
     Contradiction {
-        /// What holds between them, with their names.
+        /// Rule that holds between them, with their names.
         reason: &'static str,
     },
     /// The springs of all symptoms together are too stiff.

@@ -54,7 +54,7 @@ pub struct ShaftPath<F, V = Linear> {
     omega: F,
     /// Ω̇ at the start, rad/s².
     omega_dot: F,
-    /// What Ω̇ does.
+    /// Course of Ω̇ over time.
     shape: V,
 }
 
@@ -78,7 +78,7 @@ impl<F: Real, V: VelocityShape<F>> ShaftPath<F, V> {
         self.shape.plus(self.omega_dot, || time_s)
     }
 
-    /// What Ω̇ does.
+    /// Course of Ω̇ over time.
     #[inline]
     pub fn shape(&self) -> V {
         self.shape

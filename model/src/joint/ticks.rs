@@ -15,7 +15,7 @@ pub struct Ticks<F> {
 }
 
 impl<F: Real> Ticks<F> {
-    /// From a number of ticks; negative and NaN give zero.
+    /// Length of a number of ticks; negative and NaN give zero.
     #[inline]
     pub fn new(ticks: F) -> Self {
         let whole = ticks.whole();
@@ -26,7 +26,7 @@ impl<F: Real> Ticks<F> {
         }
     }
 
-    /// From a number of ticks in f64, so that a long span keeps a precise
+    /// Length of a number of ticks in f64, so that a long span keeps a precise
     /// fraction in f32 too.
     pub fn from_f64(ticks: f64) -> Self {
         let Ticks { whole, fraction } = Ticks::<f64>::new(ticks);

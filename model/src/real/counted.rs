@@ -9,7 +9,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub(crate) struct Counted(f64);
 
-/// What was done with counted numbers. Signs and comparisons are free.
+/// Tally of the operations on counted numbers. Signs and comparisons are free.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Operations {
     /// Sums, differences and products.

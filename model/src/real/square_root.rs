@@ -6,7 +6,7 @@
 #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
 #[inline]
 pub(super) fn square_root(x: f32) -> f32 {
-    /// With the hard-float ABI a number comes and goes in `s0`.
+    /// Computes √x by the core's instruction: with the hard-float ABI a number comes and goes in `s0`.
     ///
     /// # Safety
     /// The core has `s0`, which this ABI says.

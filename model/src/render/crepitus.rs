@@ -47,14 +47,14 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Crepitus<F, L> {
         }
     }
 
-    /// From the next tick on, towards these numbers, no torque faster than
+    /// Moves towards these numbers from the next tick on, no torque faster than
     /// `slew_nm_per_s`. A change that is still under way ends where it is.
     pub fn commit(&mut self, next: StepCoefficients<F>, slew_nm_per_s: f64) {
         let now = *self.held.joint().coefficients();
         self.follow(Ramp::new(now, next, slew_nm_per_s));
     }
 
-    /// As [`Self::commit`], along a ramp that was made elsewhere: it must
+    /// [`Self::commit`] along a ramp that was made elsewhere: it must
     /// start with the active coefficients, so none may be in progress.
     pub fn follow(&mut self, ramp: Ramp<F>) {
         self.ramp = ramp;
@@ -223,7 +223,7 @@ mod tests {
         assert!((9..=10).contains(&settles) && settling[0], "{settling:?}");
     }
 
-    /// What rings a bone.
+    /// Jumps of the torque, which ring a bone.
     #[test]
     fn the_jumps_of_a_tick_are_those_of_its_events() {
         let mut renderer = after(0);

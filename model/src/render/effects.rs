@@ -67,7 +67,7 @@ effects! {
 pub struct EffectSpec {
     /// Name in scene files; the group of its parameters.
     pub name: &'static str,
-    /// What it adds.
+    /// Description of its contribution.
     pub adds: &'static str,
     /// Its state variables.
     pub states: &'static [&'static str],
@@ -85,14 +85,14 @@ pub struct EffectSpec {
     pub parameters: &'static [ParameterSpec],
     /// Its choices.
     pub choices: &'static [Choice],
-    /// Whose it is.
+    /// Its owner.
     pub of: Owner,
-    /// What the names of parameters begin with that belong to a side. In a scene a
-    /// name without it stands for all sides.
+    /// Prefixes of the names of parameters that belong to a side. In a scene a
+    /// name without a prefix stands for all sides.
     pub sides: &'static [&'static str],
 }
 
-/// Whose an effect is.
+/// Owner of an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Owner {
     /// The knee's: presets set it.
@@ -107,7 +107,7 @@ pub enum Owner {
 pub struct Need {
     /// Its name.
     pub effect: &'static str,
-    /// Why.
+    /// Reason why it is needed.
     pub why: &'static str,
 }
 
@@ -118,7 +118,7 @@ pub struct Timing {
     pub step_s: f64,
     /// The most ticks between a sample and the torque that answers it.
     pub delay_ticks: usize,
-    /// How it sees the joint.
+    /// Sight that the device has of the joint.
     pub sight: Sight,
 }
 
@@ -137,18 +137,18 @@ impl Timing {
     }
 }
 
-/// What an effect knows in a tick.
+/// Input of an effect in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Tick<'a, F> {
     /// The joint's velocity as far as known, rad/s.
     pub omega_rad_s: F,
     /// Its travel since the last sample that was taken, rad; without a good one none.
     pub travel_rad: F,
-    /// What symptoms may believe of its motion; `None` without a good sample.
+    /// Motion of the joint that symptoms may believe; `None` without a good sample.
     pub travel: Option<&'a Travel<F>>,
     /// Consecutive ticks without a good sample.
     pub missing_ticks: u32,
-    /// Where it is, or was seen last.
+    /// Place of the joint, or the place where it was seen last.
     pub place: Position<F>,
     /// The motor is driven: symptoms act.
     pub is_driven: bool,
@@ -157,7 +157,7 @@ pub struct Tick<'a, F> {
 }
 
 impl<'a, F: Real> Tick<'a, F> {
-    /// Of this sample.
+    /// Input from this sample.
     #[inline]
     pub fn of(
         seen: &Seen<F>,
@@ -208,11 +208,11 @@ impl<F, O: FnMut(&'static EffectSpec, Change<F>)> Observe<F> for O {
 /// Energy that all symptoms that are no springs may return at once, J.
 pub const TANK_J: f64 = 0.2;
 
-/// And continuously, W: in any 2 s at most 0.28 J, with a bone's ringing less than
-/// the half joule that a device may give a leg.
+/// Power that all symptoms that are no springs may return continuously, W: in any 2 s at most 0.28 J, with
+/// a bone's ringing less than the half joule that a device may give a leg.
 pub const TANK_REFILL_W: f64 = 0.04;
 
-/// Where what an effect adds goes.
+/// Destination of an effect's contribution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// N·m of the motor.
@@ -228,10 +228,10 @@ pub trait DeviceEffect<F: Real>: Sized {
     /// Its parameters.
     type Settings;
 
-    /// What a commit replaces of it.
+    /// Part of the law that a commit replaces.
     type Coefficients: Copy + core::fmt::Debug + PartialEq;
 
-    /// How it is switched and changed while the device runs: [`Slewed`],
+    /// Method by which it is switched and changed while the device runs: [`Slewed`],
     /// [`Faded`] or [`Kept`].
     type Switched: Switched<F, Self>;
 
@@ -250,24 +250,24 @@ pub trait DeviceEffect<F: Real>: Sized {
         timing: &Timing,
     ) -> Result<Self::Coefficients, SettingsError>;
 
-    /// At rest, with these coefficients.
+    /// Returns the effect at rest, with these coefficients.
     fn new(coefficients: Self::Coefficients) -> Self;
 
-    /// As at arming: at this place of the joint. Only symptoms have one.
+    /// Puts it at rest as at arming: at this place of the joint. Only symptoms have one.
     fn rest(&mut self, _: &Position<F>) {}
 
-    /// Where what an effect with these settings adds goes.
+    /// Destination of the contribution of an effect with these settings.
     fn target_of(_: &Self::Settings) -> Target {
         Target::Joint
     }
 
-    /// Where what this one adds goes.
+    /// Destination of this effect's contribution.
     #[inline]
     fn target(&self) -> Target {
         Target::Joint
     }
 
-    /// What to add in this tick, N·m or V.
+    /// Contribution in this tick, N·m or V.
     fn added(
         &mut self,
         tick: &Tick<'_, F>,
@@ -332,11 +332,11 @@ pub trait Switched<F: Real, E: DeviceEffect<F>> {
     /// Absent.
     fn new(slew_nm: F) -> Self;
 
-    /// From the next tick on: another law, or none, where coefficients are given;
-    /// and torque that changes for it by at most `slew_nm` a tick.
+    /// Applies another law, or none, from the next tick on, where coefficients are given;
+    /// the torque changes for it by at most `slew_nm` a tick.
     fn change(&mut self, coefficients: &Option<Option<E::Coefficients>>, slew_nm: F);
 
-    /// As at arming, at this place of the joint.
+    /// Puts it at rest as at arming, at this place of the joint.
     fn rest(&mut self, _: &Position<F>) {}
 
     /// The law in force.
@@ -383,7 +383,7 @@ const fn bit<E: DeviceEffect<f64>>() -> u32 {
     bit
 }
 
-/// What else is shown of an effect that has acted.
+/// Enters the phase of an effect that has acted, and the model's torque if it is a symptom.
 #[inline]
 fn note<F: Real, E: DeviceEffect<F>>(law: Option<&E>, added_nm: F, shown: &mut Shown<F>) {
     if E::IS_SYMPTOM {
@@ -398,7 +398,7 @@ fn note<F: Real, E: DeviceEffect<F>>(law: Option<&E>, added_nm: F, shown: &mut S
 
 /// Runs code with the law of an effect.
 pub trait LawVisitor<F: Real> {
-    /// What it returns.
+    /// Result of `visit`.
     type Output;
 
     /// The law that was asked for.
@@ -448,7 +448,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// What an effect adds to 1 N·m in a tick, and what is shown then.
+    /// Returns the contribution of an effect to 1 N·m in a tick, and what is shown then.
     pub(crate) fn after<E>(
         stage: &mut impl Adds<f32, E>,
         omega_rad_s: f32,

@@ -64,7 +64,7 @@ impl<F: Real, J: StickSlip<F>> Guarded<F, J> {
         self.held.torque_nm()
     }
 
-    /// Whether samples are missing and the torque is held.
+    /// Returns whether samples are missing and the torque is held.
     #[inline]
     pub fn is_holding(&self) -> bool {
         self.held.is_holding()

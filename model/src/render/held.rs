@@ -92,7 +92,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
         }
     }
 
-    /// Whether samples are missing.
+    /// Returns whether samples are missing.
     #[inline]
     pub fn is_holding(&self) -> bool {
         self.is_holding

@@ -19,7 +19,7 @@ pub const HOLD_TICKS: u32 = 20;
 pub enum Sample<F> {
     /// The shaft's motion since the last sample that was taken.
     Taken(ShaftStep<F>),
-    /// Nothing.
+    /// No sample.
     Lost,
 }
 
@@ -38,7 +38,7 @@ pub enum Checked<F> {
 }
 
 impl<F: Real> Checked<F> {
-    /// How far the shaft has moved since it was seen last, rad; none while it
+    /// Travel of the shaft since it was seen last, rad; `None` while it
     /// is out of sight.
     #[inline]
     pub fn travel_rad(&self) -> Option<F> {
@@ -103,9 +103,9 @@ pub struct InputLimits<F> {
     pub speed_rad_s: F,
     /// The largest change of its velocity in one tick, rad/s.
     pub jump_rad_s: F,
-    /// How many ticks the last torque is held.
+    /// Ticks for which the last torque is held.
     pub hold_ticks: u32,
-    /// How far the torque falls in a tick after that, N·m.
+    /// Amount by which the torque falls in a tick after that, N·m.
     pub release_nm: F,
 }
 
@@ -146,7 +146,7 @@ pub struct InputCheck<F> {
 }
 
 impl<F: Real> InputCheck<F> {
-    /// For ticks of `step_s` and a shaft that moves with `omega_rad_s`.
+    /// Check for ticks of `step_s` and a shaft that moves with `omega_rad_s`.
     pub fn new(limits: &InputLimits<F>, step_s: F, omega_rad_s: F) -> Self {
         Self {
             speed_rad_s: limits.speed_rad_s,
@@ -165,7 +165,7 @@ impl<F: Real> InputCheck<F> {
         self.counters
     }
 
-    /// Whether a shaft can have made this step. A NaN passes no comparison.
+    /// Returns whether a shaft can have made this step. A NaN passes no comparison.
     #[inline]
     fn is_plausible(&self, shaft: &ShaftStep<F>) -> bool {
         let mut reach = self.reach_rad;

@@ -19,7 +19,7 @@ pub struct TorqueLimits<F> {
 }
 
 impl<F: Real> TorqueLimits<F> {
-    /// Of a device that is not armed.
+    /// Limits of a device that is not armed.
     pub fn new(most_nm: F, slew_nm: F) -> Self {
         Self {
             most_nm,
@@ -29,7 +29,7 @@ impl<F: Real> TorqueLimits<F> {
         }
     }
 
-    /// Of a device that was armed long ago.
+    /// Limits of a device that was armed long ago.
     pub fn armed(most_nm: F, slew_nm: F) -> Self {
         Self {
             allowance_nm: most_nm,
@@ -38,13 +38,13 @@ impl<F: Real> TorqueLimits<F> {
         }
     }
 
-    /// From the next tick on, these numbers.
+    /// Applies these numbers from the next tick on.
     pub fn change(&mut self, most_nm: F, slew_nm: F) {
         self.most_nm = most_nm;
         self.slew_nm = slew_nm;
     }
 
-    /// Whether the bridge is driven in the next tick.
+    /// Returns whether the bridge is driven in the next tick.
     #[inline]
     pub fn set_energised(&mut self, is_energised: bool) {
         self.is_energised = is_energised;

@@ -1,4 +1,4 @@
-//! Where the joint is, for symptoms that depend on its angle.
+//! Place of the joint, for symptoms that depend on its angle.
 //!
 //! An angle is a whole number of encoder counts and a rest. A difference of two
 //! is then exact to a count's rounding however far the joint is from its zero:
@@ -15,7 +15,7 @@ use crate::render::input_check::{Checked, Gap};
 pub struct Position<F> {
     /// Whole counts; wraps.
     pub count: i32,
-    /// What the angle is beyond them, rad.
+    /// Rest of the angle beyond them, rad.
     pub rest_rad: F,
 }
 
@@ -29,7 +29,7 @@ impl<F: Real> Position<F> {
         }
     }
 
-    /// How far it is beyond `other`, rad.
+    /// Distance beyond `other`, rad.
     #[inline]
     pub fn beyond(&self, other: &Self, rad_per_count: F) -> F {
         F::from_count(self.count.wrapping_sub(other.count)) * rad_per_count
@@ -47,14 +47,14 @@ impl<F: Real> Position<F> {
     }
 }
 
-/// How a device sees its joint.
+/// Resolution, flicker and velocity lag with which a device sees its joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
     /// Angle of a count, rad.
     pub rad_per_count: f64,
-    /// By how much the angle of a joint at rest may flicker, rad.
+    /// Largest flicker of the angle of a joint at rest, rad.
     pub flicker_rad: f64,
-    /// By how much the velocity is late, s.
+    /// Lag of the velocity, s.
     pub velocity_lag_s: f64,
 }
 
@@ -67,7 +67,7 @@ impl Sight {
         velocity_lag_s: 0.0,
     };
 
-    /// Through an encoder and its estimate of the velocity.
+    /// Sight through an encoder and its estimate of the velocity.
     pub fn of_encoder(settings: &EncoderSettings) -> Self {
         let rad_per_count = settings.rad_per_count();
         Self {
@@ -104,7 +104,7 @@ pub struct Scale<F> {
 }
 
 impl<F: Real> Scale<F> {
-    /// For ticks of `step_s`.
+    /// Scale for ticks of `step_s`.
     pub fn new(sight: &Sight, step_s: f64) -> Self {
         Self {
             rad_per_count: F::from_f64(sight.rad_per_count),
@@ -124,7 +124,7 @@ pub const MOST_TICKS: u32 = 32;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Travel<F> {
-    /// Where it ends.
+    /// Place at its end.
     pub to: Position<F>,
     /// Δφ, rad.
     pub delta_rad: F,
@@ -143,7 +143,7 @@ pub struct Travel<F> {
 }
 
 impl<F: Real> Travel<F> {
-    /// What a checked sample says; `None` where there is none.
+    /// Travel that a checked sample gives; `None` without a sample.
     #[inline]
     pub fn of(input: &Checked<F>, to: &Position<F>, scale: &Scale<F>) -> Option<Self> {
         match input {
@@ -186,7 +186,7 @@ impl<F: Real> Travel<F> {
         travel
     }
 
-    /// Whether it is numbers that a joint can have: a bare law has no check of its
+    /// Returns whether it is numbers that a joint can have: a bare law has no check of its
     /// input before it. A NaN passes no comparison.
     #[inline]
     pub fn is_plausible(&self) -> bool {
@@ -220,7 +220,7 @@ impl<F: Real> Travel<F> {
         rate * self.length * (to - from)
     }
 
-    /// Where the joint is after this share of the time.
+    /// Place of the joint after this share of the time.
     #[inline]
     pub fn place(&self, fraction: F) -> Position<F> {
         let left = F::ONE - fraction;
@@ -234,7 +234,7 @@ impl<F: Real> Travel<F> {
         self.omega_start_rad_s + (self.omega_end_rad_s - self.omega_start_rad_s) * fraction
     }
 
-    /// How far the end is beyond `place`, rad.
+    /// Distance of the end beyond `place`, rad.
     #[inline]
     pub fn end_beyond(&self, place: &Position<F>) -> F {
         self.to.beyond(place, self.rad_per_count)
@@ -326,7 +326,7 @@ pub(crate) mod tests {
         );
     }
 
-    /// From 1 rad, Δφ = (Ω₀ + Ω₁)·h/2.
+    /// Travel from 1 rad with Δφ = (Ω₀ + Ω₁)·h/2.
     pub(crate) fn travel(from_rad_s: f64, to_rad_s: f64) -> Travel<f64> {
         let scale = Scale::new(&Sight::IDEAL, 5e-5);
         let delta = (from_rad_s + to_rad_s) * scale.half_step_s;
@@ -379,7 +379,7 @@ pub(crate) mod tests {
         assert_eq!(Travel::of(&Checked::Missing(1), &to, &scale), None);
     }
 
-    /// Of the longest torque, over all of the longest release, in f32.
+    /// Decay of the longest torque, over all of the longest release, in f32.
     #[test]
     fn a_long_decay_keeps_its_digits() {
         let scale = Scale::<f32>::new(&Sight::IDEAL, 5e-5);

@@ -52,7 +52,7 @@ impl<F: Real> Ramp<F> {
         }
     }
 
-    /// From the active coefficients to `to`, with no torque faster than
+    /// Ramp from the active coefficients to `to`, with no torque faster than
     /// `slew_nm_per_s` > 0. Computed in f64, so called outside the tick.
     pub fn new(from: StepCoefficients<F>, to: StepCoefficients<F>, slew_nm_per_s: f64) -> Self {
         let ratio = |a: F, b: F| b.to_f64() / a.to_f64();
@@ -79,7 +79,7 @@ impl<F: Real> Ramp<F> {
         }
     }
 
-    /// Whether numbers still move.
+    /// Returns whether numbers still move.
     #[inline]
     pub fn is_settling(&self) -> bool {
         self.passed < self.ticks

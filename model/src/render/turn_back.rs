@@ -74,13 +74,13 @@ pub fn most_rad_per_count(settings: &Settings) -> f64 {
 pub struct TurnBack<F> {
     allowance_rad: F,
     slip_number: u32,
-    /// How far the shaft is behind the foremost point of this slip, rad.
+    /// Distance of the shaft behind the foremost point of this slip, rad.
     behind_rad: F,
     turned: bool,
 }
 
 impl<F: Real> TurnBack<F> {
-    /// For an encoder with this angle of one count at the joint.
+    /// Detector for an encoder with this angle of one count at the joint.
     pub fn new(rad_per_count: F) -> Self {
         Self {
             allowance_rad: F::TWO * rad_per_count,
@@ -110,7 +110,7 @@ impl<F: Real> TurnBack<F> {
         }
     }
 
-    /// Whether the hand has turned back: the torque to show is zero.
+    /// Returns whether the hand has turned back: the torque to show is zero.
     #[inline]
     pub fn is_turned(&self) -> bool {
         self.turned
@@ -125,7 +125,7 @@ mod tests {
 
     const COUNT: f64 = 1e-5;
 
-    /// Where the torque is off, for moves of so many counts in one slip.
+    /// Returns whether the torque is off after each of the moves, in counts, in one slip.
     fn turned_after(sense: Sense, moves: &[f64]) -> std::vec::Vec<bool> {
         let mut guard = TurnBack::new(COUNT);
         moves

@@ -44,11 +44,11 @@ enum State<F> {
 #[derive(Clone, Copy, Debug)]
 struct Slip<F> {
     sense: Sense,
-    /// Where in its last tick it ends; while it is open, where it began.
+    /// Fraction of its last tick at which it ends; while it is open, that at which it began.
     end_fraction: F,
     /// It began in the step before, and its end is not known yet.
     is_open: bool,
-    /// From its anchor, where x and v are known, to its end.
+    /// Time from its anchor, where x and v are known, to its end.
     duration: Ticks<F>,
     /// θ − s·Tk/kr at the anchor, rad.
     x: F,
@@ -157,7 +157,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Frozen<F, L> {
         }
     }
 
-    /// At most [`EVENTS_PER_STEP`] events.
+    /// Continues through further phases to the step's end: at most [`EVENTS_PER_STEP`] events in a step.
     #[inline(never)]
     fn further_phases(&mut self, at: &mut Place<F>, on_event: &mut impl FnMut(Event<F>)) {
         loop {
@@ -167,7 +167,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Frozen<F, L> {
         }
     }
 
-    /// From here on in stick: whether that is the rest of the step.
+    /// Continues in stick from here on; returns whether that is the rest of the step.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "as `first_break`")]
     fn stick(&mut self, at: &mut Place<F>, on_event: &mut impl FnMut(Event<F>)) -> bool {
@@ -211,7 +211,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Frozen<F, L> {
         self.begin_slip(sense, fraction, theta, omega)
     }
 
-    /// From here on in a slip, if it is one: whether that is the rest of the
+    /// Continues in a slip from here on, if it is one; returns whether that is the rest of the
     /// step.
     #[inline]
     fn slip(&mut self, at: &mut Place<F>, on_event: &mut impl FnMut(Event<F>)) -> bool {
@@ -274,7 +274,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Frozen<F, L> {
     }
 }
 
-/// How far a step has come.
+/// Progress within a step.
 struct Place<F> {
     path: ShaftPath<F>,
     /// Travel of the whole step, rad.
@@ -298,7 +298,7 @@ impl<F: Real> Place<F> {
     }
 }
 
-/// Where and in which sense a stick at `theta` breaks after `from_s`.
+/// Time and sense of the break of a stick at `theta` after `from_s`.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "as `first_break`")]
 fn find_break<F: Real, L: Locate<F, Shape = Linear>>(

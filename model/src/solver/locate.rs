@@ -1,4 +1,4 @@
-//! How the end of a phase is found: one file a rung of the ladder.
+//! Location of the end of a phase: one file a rung of the ladder.
 //!
 //! A stick ends where its torque reaches the static limit; a slip ends where
 //! the shaft's velocity meets the object's. A locator finds the time of
@@ -81,7 +81,7 @@ pub struct SlipPath<'a, F, P, V = Linear> {
     pub omega: F,
     /// Ω̇ at the start, rad/s².
     pub omega_dot: F,
-    /// What Ω̇ does.
+    /// Course of Ω̇ over time.
     pub shape: V,
 }
 
@@ -96,7 +96,7 @@ impl<F: Real, P: Propagate<F>, V: VelocityShape<F>> SlipPath<'_, F, P, V> {
         self.sense.of_signed(omega - v)
     }
 
-    /// Whether the shaft has fallen back to the object at the end of the
+    /// Returns whether the shaft has fallen back to the object at the end of the
     /// stretch, for those who look only there.
     ///
     /// A slip begins with equal velocities, and where its first stretch is

@@ -1,4 +1,4 @@
-//! How a slip is carried forward: one file a rung of the ladder.
+//! Propagation of a slip: one file a rung of the ladder.
 //!
 //! A propagator knows nothing of phases and events; a
 //! [locator](crate::solver::locate) knows nothing of the method that moves the object.

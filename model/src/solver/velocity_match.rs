@@ -71,7 +71,7 @@ enum State<F> {
     },
 }
 
-/// Where in a step the object is.
+/// Point in a step that the object has reached.
 struct Here<F> {
     time_s: F,
     omega: F,

@@ -18,7 +18,7 @@ struct Spring {
     sight: Sight,
     /// The asperity below.
     below: i32,
-    /// In parts of a count.
+    /// Place of the joint, in parts of a count.
     at: i32,
     nm: f64,
     snaps: u32,

@@ -261,7 +261,7 @@ fn texture_snaps_by_the_angle() {
     }
 }
 
-/// In f32 a slow answer comes as near to what the muscle was told as in f64: what it gains in a
+/// In f32 a slow answer comes as near to the muscle's input as in f64: what it gains in a
 /// tick is then less than the last digit of what it is.
 #[test]
 fn a_slow_reflex_is_as_exact_in_single_precision() {
@@ -359,7 +359,7 @@ fn asperities_go_on_below_zero_and_each_lets_go_of_its_height() {
     }
 }
 
-/// What a muscle is told over a gap comes as late as anything: nothing of it is lost.
+/// Input of a muscle over a gap: it takes effect as late as any other, and nothing of it is lost.
 #[test]
 fn a_gap_leaves_a_reflex_as_late_as_it_is() {
     let settings = EffectSettings {
@@ -386,7 +386,7 @@ fn a_gap_leaves_a_reflex_as_late_as_it_is() {
         }
         let seen_nm = gaps.step(at(seen), at(tick + 1), at(tick + 1).0 - at(seen).0);
         seen = tick + 1;
-        // Over a gap it is told what it is as the gap ends: 0.35 mN·m a tick more, for two ticks
+        // Over a gap its input is that at the end of the gap: 0.35 mN·m a tick more, for two ticks
         // of the 200 in which the muscle follows.
         near(seen_nm, nm, 1e-5);
         assert!(tick < 9_000 || nm > 0.5, "{nm}");

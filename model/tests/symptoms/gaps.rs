@@ -121,7 +121,7 @@ fn between_two_walls(extension_loss: f64) -> (Rig<f64>, EffectSettings, f64) {
     (rig, walls(70.0, 120.0), at_rad)
 }
 
-/// At rest the torque falls from `left_nm`, and never to the other side.
+/// Asserts that at rest the torque falls from `left_nm`, and never to the other side.
 fn never_grows(rig: &mut Rig<f64>, rest: (f64, f64), mut left_nm: f64) {
     for _ in 0..1_000 {
         let nm = rig.step(rest, rest, 0.0);
@@ -133,7 +133,7 @@ fn never_grows(rig: &mut Rig<f64>, rest: (f64, f64), mut left_nm: f64) {
     }
 }
 
-/// What has left of the sum of two ends does not come back.
+/// Part of the sum of two ends that has left: it does not come back.
 #[test]
 fn two_walls_that_leave_and_are_committed_again_do_not_push() {
     let (mut rig, walls, at_rad) = between_two_walls(0.3);
@@ -325,7 +325,7 @@ fn committed(rig: &mut Rig<f64>, settings: EffectSettings, rest: (f64, f64)) -> 
     last_nm
 }
 
-/// Just before anything has decayed, and long after.
+/// Times of a decay, s, with further ticks: just before anything has decayed, and long after.
 const DECAYS: [(f64, u32); 2] = [(0.3, 0), (0.03, 6_000)];
 
 #[test]
@@ -457,7 +457,7 @@ fn a_muscle_that_has_caught_obeys_a_commit() {
     }
 }
 
-/// When the sample is refused: the hand goes back, and the tank is low.
+/// Tick of the refused sample: the hand goes back, and the tank is low.
 const REFUSED_TICK: u32 = 1_900;
 
 /// The torque of a reflex whose tank is low, and after a sample that is refused: a travel

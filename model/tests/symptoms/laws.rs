@@ -1,4 +1,4 @@
-//! What holds for any symptom, hand and commit.
+//! Laws that hold for any symptom, hand and commit.
 
 use super::ledger::*;
 use super::random::*;

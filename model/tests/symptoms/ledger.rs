@@ -1,4 +1,4 @@
-//! What a hand gets back, against its bound. A play returns to the hand over any time,
+//! Energy that a hand gets back, against its bound. A play returns to the hand over any time,
 //! d ticks late, at most
 //!
 //! ```text
@@ -24,7 +24,7 @@ pub(crate) struct Ledger {
     /// The most that any earlier level is above what was stored then.
     pub(crate) floor_j: f64,
     pub(crate) unseen: (f64, f64, f64),
-    /// What is held beyond the torque while that leaves.
+    /// Energy that is held beyond the torque while that leaves, J.
     pub(crate) leaves_j: f64,
     pub(crate) worst_j: f64,
 }
@@ -89,7 +89,7 @@ pub(crate) struct Hand<'a> {
     pub(crate) gaps: Option<(usize, usize)>,
 }
 
-/// By how much a hand gets back more than the bound, J, and the largest torque.
+/// Energy that a hand gets back beyond the bound, J, and the largest torque, N·m.
 pub(crate) fn excess<F: Real>(settings: EffectSettings, hand: &Hand<'_>) -> (f64, f64) {
     let encoder = EncoderSettings::default();
     let (sight, spare_rad) = if hand.counts {

@@ -250,7 +250,7 @@ fn whatever_a_gap_hides_of_clonus_happens_in_its_time() {
     }
 }
 
-/// With the first beat three ticks before the muscle is let go of, or three ticks after.
+/// The first beat is due three ticks before the muscle is let go of, or three ticks after.
 #[test]
 fn a_beat_and_the_end_of_a_stretch_within_one_gap_come_in_their_order() {
     let settings = EffectSettings {
@@ -310,7 +310,7 @@ fn a_beat_and_the_end_of_a_stretch_within_one_gap_come_in_their_order() {
     }
 }
 
-/// What is left of a catch after a gap in which it began is what is left of it anyway, in both
+/// Rest of a catch after a gap in which it began: the same as without a gap, in both
 /// laws that decay.
 #[test]
 fn a_decay_that_begins_within_a_gap_has_its_time() {

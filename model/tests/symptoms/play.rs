@@ -21,7 +21,7 @@ fn travel(from_rad: f64, to_rad: f64) -> Travel<f64> {
     Travel::of(&Checked::Step(shaft), &place, &scale).unwrap()
 }
 
-/// To an angle with a spring of 100 N·m/rad within ±2 N·m.
+/// Moves to an angle with a spring of 100 N·m/rad within ±2 N·m.
 fn to(play: &mut Play<f64>, from_rad: f64, to_rad: f64, stiffness: f64) -> f64 {
     let travel = travel(from_rad, to_rad);
     play.follow(

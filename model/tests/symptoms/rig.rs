@@ -26,7 +26,7 @@ pub(crate) struct Rig<F: Real> {
     pub(crate) check: InputCheck<F>,
     pub(crate) settings: EffectSettings,
     pub(crate) timing: Timing,
-    /// What happened, and in which share of the last tick.
+    /// Events of the last tick, each with the share of the tick at which it happened.
     pub(crate) words: Vec<(Word, f64)>,
     /// The torque just before and after each, N·m.
     pub(crate) torques_nm: Vec<(f64, f64)>,

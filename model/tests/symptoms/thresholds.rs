@@ -15,7 +15,7 @@ use crepitus_model::{Sample, ShaftStep};
 
 const COUNT_RAD: f64 = Sight::IDEAL.rad_per_count;
 
-/// So many counts from an angle. Differences of such places are exact.
+/// Place so many counts from an angle. Differences of such places are exact.
 fn place(deg: f64, counts: i32) -> Position<f64> {
     let place = Sight::IDEAL.position::<f64>(deg.to_radians());
     Position {
@@ -41,7 +41,7 @@ fn go(rig: &mut Rig<f64>, to: Position<f64>, counts: i32, (from, end): (f64, f64
     rig.tick(Sample::Taken(shaft), to)
 }
 
-/// What happened in the last tick, but for the play under a symptom.
+/// Events of the last tick, but for those of the play under a symptom.
 fn told(rig: &Rig<f64>) -> Vec<(Word, f64)> {
     let words = rig.words.iter().copied();
     words.filter(|(word, _)| !word.is_of_play()).collect()

@@ -265,7 +265,7 @@ impl<F: Real> BoneShaping<F> {
         torque_nm
     }
 
-    /// As at the start but for the tank, for disarming.
+    /// Resets the state to that at the start but for the tank, for disarming.
     pub fn reset(&mut self) {
         self.ringing_nm = F::ZERO;
         self.rate_nm_per_s = F::ZERO;

@@ -142,7 +142,7 @@ pub struct ClaspKnifeCoefficients<F> {
     scale: Scale<F>,
     sense: F,
     onset: Position<F>,
-    /// Where it collapses; `None` if a torque decides.
+    /// Place of the collapse; `None` if a torque decides.
     release: Option<Position<F>>,
     release_nm: F,
     onset_nm: F,
@@ -155,7 +155,7 @@ pub struct ClaspKnifeCoefficients<F> {
     rearm_rad: F,
 }
 
-/// What the muscle does.
+/// State of the muscle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage<F> {
     Out,

@@ -132,7 +132,7 @@ pub struct ClonusCoefficients<F> {
     beats: u32,
 }
 
-/// What the muscle does.
+/// State of the muscle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     /// Waits for a stretch.
@@ -161,7 +161,7 @@ impl<F: Real> Since<F> {
         F::from_whole(u64::from(self.whole)) + self.rest
     }
 
-    /// From so many ticks later on.
+    /// Time since an instant that is so many ticks later.
     fn later(&self, ticks: F) -> Self {
         let whole = ticks.whole();
         Self {
@@ -178,9 +178,9 @@ impl<F: Real> Since<F> {
 pub struct Clonus<F> {
     with: ClonusCoefficients<F>,
     stage: Stage,
-    /// Since the interval began.
+    /// Time since the interval began.
     interval_since: Since<F>,
-    /// Since the last beat began, which outlives its interval where the muscle is let
+    /// Time since the last beat began, which outlives its interval where the muscle is let
     /// go and stretched again.
     beat_since: Since<F>,
     /// The interval, ticks.
@@ -312,7 +312,7 @@ impl<F: Real> Law for Clonus<F> {
             Stage::Beating => {
                 self.interval_since.whole = self.interval_since.whole.saturating_add(travel.ticks);
                 if is_back {
-                    self.pace_until_let_go(travel, on_change);
+                    self.pace_until_stop(travel, on_change);
                 } else {
                     self.pace(F::ZERO, travel, on_change);
                 }
@@ -321,7 +321,7 @@ impl<F: Real> Law for Clonus<F> {
         }
         self.push();
         if self.stage != Stage::Ready && is_back {
-            self.let_go(travel, on_change);
+            self.stop(travel, on_change);
         }
         self.torque_nm
     }
@@ -387,21 +387,21 @@ impl<F: Real> Clonus<F> {
 
     /// The same where the joint returns within this tick: only a beat whose time came before.
     #[inline]
-    fn pace_until_let_go(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
+    fn pace_until_stop(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
         let late = self.interval_since.ticks() - self.interval;
-        if late >= F::ZERO && late >= self.let_go_since(travel) {
+        if late >= F::ZERO && late >= self.stopped_since(travel) {
             self.next(late, F::ZERO, travel, on_change);
         }
     }
 
-    /// How long ago the joint has returned within this tick, ticks.
+    /// Time since the joint returned within this tick, ticks.
     #[cold]
-    fn let_go_since(&self, travel: &Travel<F>) -> F {
+    fn stopped_since(&self, travel: &Travel<F>) -> F {
         let fraction = travel.reaches(&self.stop_place());
         (F::ONE - fraction) * F::from_whole(u64::from(travel.ticks))
     }
 
-    /// Where the muscle is let go.
+    /// Place at which the muscle is let go.
     fn stop_place(&self) -> Position<F> {
         let with = &self.with;
         with.hold.moved(-with.sense * with.back_rad)
@@ -442,7 +442,7 @@ impl<F: Real> Clonus<F> {
 
     /// The joint has returned.
     #[cold]
-    fn let_go(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
+    fn stop(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
         let place = self.stop_place();
         if self.beaten > 0 || self.stage == Stage::Beating {
             let nm = self.torque_nm;
@@ -463,7 +463,7 @@ fn half_wave<F: Real>(x: F) -> F {
         .fold(F::ZERO, |sum, part| sum * u + F::from_f64(*part))
 }
 
-/// Of the cosine, the smallest first.
+/// Coefficients of the cosine's series, the smallest first.
 const SERIES: [f64; 8] = [
     -1.0 / 87_178_291_200.0,
     1.0 / 479_001_600.0,

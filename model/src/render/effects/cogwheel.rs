@@ -112,7 +112,7 @@ const TOOTH: f64 = 18_446_744_073_709_551_616.0;
 /// Fractions of a tooth that are shifted out for a ratio of two of them.
 const COARSE: u32 = 24;
 
-/// What turns the wheel.
+/// Drive of the wheel: time, or the angle of the joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Clock {
     /// 2⁻⁶⁴ of a tooth in a tick.
@@ -150,10 +150,10 @@ pub struct Cogwheel<F> {
     with: CogwheelCoefficients<F>,
     play: Play<F>,
     elastic_nm: F,
-    /// Where in its tooth the wheel is, 2⁻⁶⁴ of a tooth.
+    /// Place of the wheel within its tooth, 2⁻⁶⁴ of a tooth.
     at: u64,
     is_high: bool,
-    /// Where the joint was as the height changed last.
+    /// Place of the joint as the height changed last.
     switched: Position<F>,
 }
 
@@ -397,7 +397,7 @@ impl<F: Real> Cogwheel<F> {
     }
 }
 
-/// How far the wheel has turned in a travel, 2⁻⁶⁴ of a tooth.
+/// Turn of the wheel in a travel, 2⁻⁶⁴ of a tooth.
 struct Turn {
     before: u64,
     turned: u64,
@@ -405,7 +405,7 @@ struct Turn {
 }
 
 impl Turn {
-    /// From a place in a tooth to another, in the sense of the turn.
+    /// Distance from a place in a tooth to another, in the sense of the turn.
     fn distance(&self, from: u64, to: u64) -> u64 {
         if self.back {
             from.wrapping_sub(to)

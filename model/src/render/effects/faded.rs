@@ -9,15 +9,15 @@ use crate::render::Shown;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Faded<F, E> {
     law: Option<E>,
-    /// How far a torque fades in a tick, N·m.
+    /// Amount by which a torque fades in a tick, N·m.
     slew_nm: F,
-    /// What is left of laws that were exchanged, N·m.
+    /// Remaining torque of laws that were exchanged, N·m.
     fading_nm: F,
     /// The last torque of the law, N·m.
     last_nm: F,
-    /// Where it went.
+    /// Destination of that torque.
     target: Target,
-    /// Where what is left goes: where it went before.
+    /// Destination of the remaining torque: where it went before.
     fading_target: Target,
 }
 
@@ -77,7 +77,7 @@ impl<F: Real, E: DeviceEffect<F>> Adds<F, E> for Faded<F, E> {
 }
 
 impl<F: Real, E> Faded<F, E> {
-    /// What is left of a law that is gone. What is shown is not lent: it would have to lie in
+    /// Remaining torque of a law that is gone, N·m. What is shown is not lent: it would have to lie in
     /// memory in every tick.
     #[cold]
     fn fade(&mut self) -> F {

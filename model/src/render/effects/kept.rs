@@ -19,7 +19,7 @@ use crate::render::position::{Position, Travel};
 /// moves along with it: it returns at most J²/2S.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kept<F, E> {
-    /// Also while it is off: a law may have much to remember, and a commit moves
+    /// The law, also while it is off: a law may have much to remember, and a commit moves
     /// nothing of it.
     law: E,
     is_on: bool,
@@ -28,7 +28,7 @@ pub struct Kept<F, E> {
     last_nm: F,
 }
 
-/// How a law's torque is shown.
+/// Way in which a law's torque is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way<F> {
     /// As it is.
@@ -168,7 +168,7 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
         nm
     }
 
-    /// What is shown of a law's torque while it is exchanged.
+    /// Returns the torque to show for the law's torque while the law is exchanged, N·m.
     #[cold]
     fn held_back(&mut self, law_nm: F, travel: Option<&Travel<F>>) -> F {
         match self.way {

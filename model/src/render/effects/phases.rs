@@ -1,4 +1,4 @@
-//! What an effect does now, in a word: its phase.
+//! Phase of an effect: what it does now, in a word.
 
 use super::{EffectSpec, SPECS};
 use crate::parameters::same;
@@ -29,7 +29,7 @@ impl EffectSpec {
         }
     }
 
-    /// Where its bits are.
+    /// Place of its bits.
     pub(super) const fn place(&self) -> Place {
         Place {
             shift: bits(SPECS, self.name),
@@ -38,7 +38,7 @@ impl EffectSpec {
     }
 }
 
-/// Where the bits of an effect are.
+/// Place of the bits of an effect.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     shift: u32,
@@ -55,7 +55,7 @@ impl Phases {
         self.0.unbounded_shr(shift) & mask
     }
 
-    /// With the phase of an effect that was at rest.
+    /// Returns these phases with that of one more effect, which was at rest.
     #[inline]
     #[must_use]
     pub(super) const fn with(self, place: Place, number: u16) -> Self {

@@ -25,7 +25,7 @@ use super::symptom::{Change, Hear, Word};
 use crate::real::Real;
 use crate::render::position::{Position, Travel};
 
-/// What the spring does.
+/// State of the spring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hold {
     /// Its torque is within the limits.
@@ -62,14 +62,14 @@ impl<F: Real> Limits<F> {
 /// A play element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Play<F> {
-    /// Where the torque was `there_nm`.
+    /// Place at which the torque was `there_nm`.
     place: Position<F>,
     there_nm: F,
     now_nm: F,
     hold: Hold,
     /// The torque that is still allowed beyond the limits after they were changed, N·m.
     allowed_nm: F,
-    /// By how much that falls in a tick, N·m.
+    /// Fall of `allowed_nm` in a tick, N·m.
     slew_nm: F,
 }
 
@@ -80,7 +80,7 @@ impl<F: Real> Default for Play<F> {
 }
 
 impl<F: Real> Play<F> {
-    /// Without torque, nowhere: [`Self::rest`] places it.
+    /// Returns a play without torque and not placed yet: [`Self::rest`] places it.
     pub fn new() -> Self {
         Self {
             place: Position::at(0),
@@ -92,14 +92,14 @@ impl<F: Real> Play<F> {
         }
     }
 
-    /// Without torque, at this place.
+    /// Puts it at this place without torque.
     #[inline]
     pub fn rest(&mut self, place: &Position<F>) {
         self.put(place, F::ZERO, Hold::Elastic);
         self.allowed_nm = F::ZERO;
     }
 
-    /// As at this place with this torque.
+    /// Puts it at this place with this torque.
     #[inline]
     pub fn put(&mut self, place: &Position<F>, nm: F, hold: Hold) {
         self.place = *place;
@@ -112,7 +112,7 @@ impl<F: Real> Play<F> {
         self.now_nm
     }
 
-    /// What it does.
+    /// State of the spring.
     #[inline]
     pub fn hold(&self) -> Hold {
         self.hold
@@ -230,7 +230,7 @@ impl<F: Real> Play<F> {
     }
 }
 
-/// What a play does that is at a limit.
+/// State of a play that is at a limit.
 #[inline]
 pub fn dragged<F: Real>(at: Hold, limit_nm: F) -> Hold {
     if limit_nm == F::ZERO { Hold::Slack } else { at }
@@ -336,7 +336,7 @@ impl<F: Real, L: Fn(F) -> Limits<F>> Passage<'_, F, L> {
         }
     }
 
-    /// When the torque of the spring met the limit: a few steps of the secant.
+    /// Share of the travel at which the torque of the spring met the limit: a few steps of the secant.
     fn met(&self, hold: Hold) -> F {
         let Self { travel, part, .. } = self;
         let end = part.end_place(travel);
@@ -360,7 +360,7 @@ impl<F: Real, L: Fn(F) -> Limits<F>> Passage<'_, F, L> {
         fraction
     }
 
-    /// When the spring fell behind the limit: where σΩ is the limit's rate. It may be
+    /// Share of the travel at which the spring fell behind the limit: where σΩ is the limit's rate. It may be
     /// noticed a tick later, so up to a tick before the travel.
     fn turned(&self, hold: Hold) -> F {
         let Self { travel, part, .. } = self;

@@ -122,7 +122,7 @@ settings! {
 /// The stiffest spring of an end, N·m/rad.
 pub const MOST_SPRING_NM_PER_RAD: f64 = 1000.0;
 
-/// Beyond this a spring needs a loss to be quiet, N·m/rad.
+/// Stiffness beyond which a spring needs a loss to be quiet, N·m/rad.
 const LOSSLESS_SPRING_NM_PER_RAD: f64 = 400.0;
 
 /// The loss that it needs.
@@ -169,7 +169,7 @@ impl EndFeel {
         Ok(())
     }
 
-    /// How far beyond its place the end reaches its cap, rad.
+    /// Distance beyond its place at which the end reaches its cap, rad.
     pub fn cap_rad(&self) -> f64 {
         let (k1, k2) = (self.stiffness_nm_per_rad, self.stiffening_nm_per_rad2);
         2.0 * self.torque_nm / (k1 + libm::sqrt(k1 * k1 + 4.0 * k2 * self.torque_nm))
@@ -205,7 +205,7 @@ struct End<F> {
     slope: F,
     bend: F,
     cap_nm: F,
-    /// How far beyond its place the cap is reached, rad.
+    /// Distance beyond its place at which the cap is reached, rad.
     cap_rad: F,
     spring: F,
 }
@@ -239,7 +239,7 @@ pub struct RangeLimitCoefficients<F> {
     flexion: End<F>,
 }
 
-/// What a joint does at an end.
+/// State of a joint at an end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 enum Stage {
     #[default]
@@ -303,7 +303,7 @@ impl<F: Real> Wall<F> {
             }
         }
         let is_below_cap = self.stage != Stage::AtCap;
-        let mut is_told = false;
+        let mut is_reported = false;
         let envelope_nm = |fraction: F| {
             end.envelope_nm(if fraction == F::ONE {
                 beyond_rad
@@ -319,17 +319,17 @@ impl<F: Real> Wall<F> {
             upper_nm: envelope_nm(fraction),
         };
         let part = Part::whole(sense);
-        let mut told = |mut change: Change<F>| {
+        let mut report = |mut change: Change<F>| {
             // Met at its cap, the limit is the cap and no envelope to flow along.
             if is_below_cap && change.word == Word::Flow && change.after_nm.abs() >= end.cap_nm {
                 change.word = Word::Cap;
-                is_told = true;
+                is_reported = true;
             }
             on_change.hear(change);
         };
         let nm = if O::LISTENS {
             self.play
-                .follow(travel, part, end.spring, limits, &mut told)
+                .follow(travel, part, end.spring, limits, &mut report)
         } else {
             self.play.follow(travel, part, end.spring, limits, &mut ())
         };
@@ -341,7 +341,7 @@ impl<F: Real> Wall<F> {
         } else if self.play.hold() != Hold::Upper || beyond_rad < end.cap_rad {
             self.stage = Stage::In;
         } else {
-            if is_below_cap && !is_told {
+            if is_below_cap && !is_reported {
                 let place = end.place.moved(sense * end.cap_rad);
                 let nm = sense * nm;
                 on_change.tell(Word::Cap, || travel.reaches(&place), nm, nm);
@@ -393,8 +393,8 @@ pub struct RangeLimit<F> {
 }
 
 impl<F: Real> RangeLimit<F> {
-    /// After a commit both ends may push, against each other: their share in common, which nobody
-    /// feels, goes. What one of them then loses is lost of the sum, too.
+    /// Releases what both ends have in common where they push against each other, as they may after a
+    /// commit: nobody feels it. What one of them then loses is lost of the sum, too.
     fn cancel(&mut self) {
         let (extension, flexion) = (&mut self.extension.play, &mut self.flexion.play);
         let common_nm = extension.torque_nm().at_most(flexion.torque_nm());

@@ -162,13 +162,13 @@ struct Threshold<F> {
 }
 
 impl<F: Real> Threshold<F> {
-    /// How far beyond it the joint is at the end of a travel.
+    /// Distance of the joint beyond the threshold at the end of a travel.
     #[inline]
     fn end_beyond(&self, travel: &Travel<F>) -> F {
         self.sense * (travel.end_beyond(&self.place) + self.shift_s * travel.omega_end_rad_s)
     }
 
-    /// And at its beginning.
+    /// Distance of the joint beyond the threshold at the beginning of a travel.
     #[inline]
     fn start_beyond(&self, travel: &Travel<F>) -> F {
         self.sense
@@ -200,9 +200,9 @@ impl<F: Real> Threshold<F> {
 /// Coefficients of [`Spasticity`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpasticityCoefficients<F> {
-    /// Of the form `catch`.
+    /// Coefficients of the form `catch`.
     Catch(CaughtCoefficients<F>),
-    /// Of the form `reflex`.
+    /// Coefficients of the form `reflex`.
     Reflex(ReflexCoefficients<F>),
 }
 
@@ -212,7 +212,7 @@ impl<F: Real> Default for SpasticityCoefficients<F> {
     }
 }
 
-/// Which form of it is rendered.
+/// Form of spasticity that is rendered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
     Catch,

@@ -20,7 +20,7 @@ use super::texture::TextureSettings;
 use crate::control::device_limits::{LimitSettings, RangeSettings};
 use crate::joint::Parameters;
 
-/// Where a leg may be moved, and how fast.
+/// Range in which a leg may be moved, and its largest speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
     /// End in extension, rad.
@@ -79,7 +79,7 @@ impl EndFeel {
 }
 
 impl RangeLimitSettings {
-    /// Between them is the torque of both ends at an angle.
+    /// Limits between which the torque of both ends lies at an angle.
     pub fn limits_at(&self, angle_rad: f64) -> Limits<f64> {
         let (extension, flexion) = (self.extension(), self.flexion());
         let extension_rad = self.extension_limit_deg.to_radians() - angle_rad;
@@ -101,7 +101,7 @@ fn about(nm: f64, elastic_nm_per_rad: f64, neutral_deg: f64, angle_rad: f64) -> 
 }
 
 impl LeadPipeSettings {
-    /// Between them is its torque at an angle; on one of them once the joint has moved
+    /// Limits between which its torque lies at an angle; on one of them once the joint has moved
     /// by 2δ in one sense.
     pub fn limits_at(&self, angle_rad: f64) -> Limits<f64> {
         let (elastic, neutral_deg) = (self.elastic_nm_per_rad, self.neutral_deg);
@@ -110,7 +110,7 @@ impl LeadPipeSettings {
 }
 
 impl CogwheelSettings {
-    /// Between them is its torque at an angle: at the height of a tooth, or between
+    /// Limits between which its torque lies at an angle: at the height of a tooth, or between
     /// two.
     pub fn limits_at(&self, angle_rad: f64, is_high: bool) -> Limits<f64> {
         let share = if is_high { 1.0 } else { self.low_share };
@@ -125,7 +125,7 @@ impl SpasticitySettings {
         sense(self.muscles)
     }
 
-    /// Whether it has the form `catch`; otherwise `reflex`.
+    /// Returns whether it has the form `catch`; otherwise `reflex`.
     pub fn catches(&self) -> bool {
         self.form == 0
     }
@@ -149,7 +149,7 @@ impl SpasticitySettings {
         (self.velocity_torque_nms_per_rad * self.sense() * omega_rad_s).clamp(0.0, self.torque_nm)
     }
 
-    /// What is left at an angle of a catch that has released, N·m, signed.
+    /// Remaining torque, at an angle, of a catch that has released, N·m, signed.
     pub fn left_nm(&self, caught_rad: f64, caught_rad_s: f64, angle_rad: f64) -> f64 {
         let beyond_rad = (self.sense() * (angle_rad - caught_rad)).max(0.0);
         self.sense()
@@ -178,7 +178,7 @@ impl SpasticitySettings {
         peak_nm.max(peak_nm * left + self.stiffness_nm_per_rad * travel_rad)
     }
 
-    /// What the reflex comes to at an angle in a stretch without end at this velocity,
+    /// Torque that the reflex comes to at an angle in a stretch without end at this velocity,
     /// but for its lateness, N·m, signed.
     pub fn reflex_nm(&self, angle_rad: f64, omega_rad_s: f64) -> f64 {
         let beyond_rad = self.sense() * (angle_rad - self.threshold_rad(omega_rad_s));
@@ -207,14 +207,14 @@ impl ClaspKnifeSettings {
         self.sense() * (self.onset_torque_nm + self.slope_nm_per_rad * beyond_rad)
     }
 
-    /// What is left of it, at any angle, after it collapsed at this one, N·m, signed.
+    /// Remaining torque, at any angle, after the collapse at this one, N·m, signed.
     pub fn left_nm(&self, released_rad: f64) -> f64 {
         self.residual_share * self.building_nm(released_rad)
     }
 }
 
 impl ClonusSettings {
-    /// From beat n to the next, s; the first beat is 0.
+    /// Interval from beat n to the next, s; the first beat is 0.
     pub fn interval_s(&self, n: u32) -> f64 {
         (1.0 + self.first_stretch * libm::exp2(-f64::from(n))) / self.frequency_hz
     }
@@ -466,7 +466,7 @@ mod tests {
         );
     }
 
-    /// Of both muscles, at the speed at which a device disarms and at slower ones.
+    /// Catches of both muscles, at the speed at which a device disarms and at slower ones.
     #[test]
     fn no_catch_exceeds_its_largest_torque_and_the_fastest_comes_close() {
         for (muscles, threshold_deg, degrees) in [(0, 50.0, [0.0, 120.0]), (1, 70.0, [120.0, 0.0])]

@@ -7,7 +7,7 @@ use crate::render::Shown;
 use crate::render::position::{Position, Travel};
 
 crate::named! {
-    /// What happens to a symptom; the names are those of `events.csv`.
+    /// Kind of a symptom's event; the names are those of `events.csv`.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
     pub enum Word {
         /// The joint enters the wall.
@@ -54,7 +54,7 @@ crate::named! {
 }
 
 impl Word {
-    /// Whether it is of the play under a symptom, of interest on request.
+    /// Returns whether it is of the play under a symptom, of interest on request.
     pub fn is_of_play(self) -> bool {
         match self {
             Self::Flow | Self::Turn | Self::Slack | Self::Take => true,
@@ -81,7 +81,7 @@ impl Word {
 /// An event of a symptom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change<F> {
-    /// What has happened.
+    /// Kind of the event.
     pub word: Word,
     /// When: the share of the travel, 0 to 1.
     pub fraction: F,
@@ -157,7 +157,7 @@ impl<F, O: FnMut(Change<F>)> Hear<F> for O {
     }
 }
 
-/// What a device hears of a symptom: by how much its torque has jumped.
+/// Receives a symptom's events on a device: by how much its torque has jumped.
 struct Heard<'a, F, O> {
     spec: &'static EffectSpec,
     jump_nm: &'a mut F,
@@ -180,24 +180,24 @@ impl<F: Real, O: Observe<F>> Hear<F> for Heard<'_, F, O> {
 /// no firmware has them.
 #[derive(Clone, Copy, Debug)]
 pub struct ClinicWords {
-    /// Above its charts.
+    /// Title above its charts.
     pub title: &'static str,
     /// Its states, in the order of the numbers of its phases; the first one is at
     /// rest.
     pub states: &'static [&'static str],
-    /// From one state to another, by an event with this name.
+    /// Changes from one state to another, by an event with this name.
     pub changes: &'static [(u16, u16, Word, &'static str)],
     /// Events within a state.
     pub within: &'static [(Word, &'static str)],
 }
 
-/// What a symptom may ask for in any movement: the limits of the device, the pages of
+/// Bounds of a symptom's demand in any movement: the limits of the device, the pages of
 /// a report and the supervision by comms are made of the sums.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     /// Its largest torque, but for what grows with the angle, N·m.
     pub torque_nm: f64,
-    /// What grows with the angle without end, N·m/rad.
+    /// Slope of the torque that grows with the angle without end, N·m/rad.
     pub slope_nm_per_rad: f64,
     /// Its stiffness where it is a spring, N·m/rad.
     pub stiffness_nm_per_rad: f64,
@@ -214,7 +214,7 @@ pub trait Law: Sized {
     /// Its parameters.
     type Settings;
 
-    /// What a commit replaces of it; its default is that of a law that is off.
+    /// Part of the law that a commit replaces; the default is that of a law that is off.
     type Coefficients: Copy + core::fmt::Debug + Default + PartialEq;
 
     /// Its description.
@@ -229,7 +229,7 @@ pub trait Law: Sized {
     /// The first rule that is broken.
     fn check(settings: &Self::Settings) -> Result<(), SettingsError>;
 
-    /// What it may ask for.
+    /// Bounds of its demand.
     fn bounds(settings: &Self::Settings) -> Bounds;
 
     /// Coefficients for settings; computed in f64 and rounded once.
@@ -241,10 +241,10 @@ pub trait Law: Sized {
         timing: &Timing,
     ) -> Result<Self::Coefficients, SettingsError>;
 
-    /// With these coefficients; [`Self::rest`] places it.
+    /// Returns the law with these coefficients; [`Self::rest`] places it.
     fn new(coefficients: Self::Coefficients) -> Self;
 
-    /// As at arming: without torque at this place of the joint, whatever it is.
+    /// Puts it at rest as at arming: without torque at this place of the joint, whatever the place.
     fn rest(&mut self, place: &Position<Self::Real>);
 
     /// Follows the joint: its torque then, N·m.
@@ -257,14 +257,14 @@ pub trait Law: Sized {
     /// Its torque now, N·m.
     fn torque_nm(&self) -> Self::Real;
 
-    /// From now on with these coefficients; its torque goes on, and falls by at
+    /// Adopts these coefficients from now on; its torque goes on, and falls by at
     /// most `slew_nm` a tick to what they allow.
     fn adopt(&mut self, coefficients: Self::Coefficients, slew_nm: Self::Real);
 
     /// There are no samples: its torque falls by `slew_nm`.
     fn release(&mut self, slew_nm: Self::Real);
 
-    /// Whether it gives energy: it is then paid from the tank.
+    /// Returns whether it gives energy: it is then paid from the tank.
     fn is_active(&self) -> bool;
 
     /// The number of its phase.
@@ -275,7 +275,7 @@ pub trait Law: Sized {
 /// live in memory and not in registers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Besides<F> {
-    /// By how much their torque jumped where an asperity was crossed, N·m.
+    /// Jump of their torque where an asperity was crossed, N·m.
     pub(super) jump_nm: F,
     /// Their torque for which a tank pays, N·m.
     pub(super) active_nm: F,
@@ -284,7 +284,7 @@ pub(super) struct Besides<F> {
 }
 
 impl<F: Real> Besides<F> {
-    /// Nothing.
+    /// No output.
     pub(super) const NOTHING: Self = Self {
         jump_nm: F::ZERO,
         active_nm: F::ZERO,
@@ -329,7 +329,8 @@ pub(super) fn sense<F: Real>(muscles: u8) -> F {
 mod tests {
     use super::*;
 
-    /// Whose share shows in no torque is located in f64, or if somebody asks.
+    /// Share of an event without and with a listener: one that shows in no torque is located in f64, or if
+    /// somebody asks.
     fn located<F: Real>() -> [f64; 2] {
         let listener = |_: Change<F>| {};
         let half = || F::HALF;

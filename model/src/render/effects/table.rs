@@ -30,7 +30,7 @@ macro_rules! effects {
                 Ok(())
             }
 
-            /// What each symptom that is on may ask for.
+            /// Bounds of the demand of each symptom that is on.
             fn bounds(&self) -> impl Iterator<Item = Bounds> {
                 let all = [$(self.$symptom.as_ref().map(<$symptom::$s_law<f64> as Law>::bounds)),*];
                 all.into_iter().flatten()
@@ -41,7 +41,7 @@ macro_rules! effects {
         /// The effects, in the order in which they act.
         pub const SPECS: &[EffectSpec] = &[$(<$effect::$law<f64> as DeviceEffect<f64>>::SPEC),*];
 
-        /// Which of them render a disorder.
+        /// Flags of the effects, true for those that render a disorder.
         pub const IS_SYMPTOM: &[bool] =
             &[$(<$effect::$law<f64> as DeviceEffect<f64>>::IS_SYMPTOM),*];
 
@@ -54,7 +54,7 @@ macro_rules! effects {
             $(#[doc = concat!("`", stringify!($effect), "`.")] pub $effect: Option<$effect::$settings>,)*
         }
 
-        /// What each adds, N·m or V.
+        /// Contribution of each effect, N·m or V.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct Added<F> {
             $(#[doc = concat!("Of `", stringify!($effect), "`.")] pub $effect: F,)*
@@ -64,9 +64,9 @@ macro_rules! effects {
         #[derive(Clone, Debug, PartialEq)]
         pub struct Effects<F> {
             $(#[doc = concat!("`", stringify!($effect), "`.")] pub $effect: Option<$effect::$law<F>>,)*
-            /// What symptoms that are no springs are paid from.
+            /// Tank from which symptoms that are no springs are paid.
             pub tank: Tank<F>,
-            /// Of angles and times.
+            /// Scale of angles and times.
             pub scale: Scale<F>,
         }
 
@@ -78,7 +78,7 @@ macro_rules! effects {
         }
 
         impl EffectSettings {
-            /// From a device's parameters.
+            /// Settings from a device's parameters.
             pub fn read(source: &impl Source) -> Self {
                 Self {
                     $($effect: source
@@ -87,7 +87,7 @@ macro_rules! effects {
                 }
             }
 
-            /// From what is given for each effect that is on.
+            /// Settings from what is given for each effect that is on.
             pub fn given<'a>(given: impl Fn(&str) -> Option<Chosen<'a>>) -> Self {
                 Self {
                     $($effect: given(<$effect::$law<f64> as DeviceEffect<f64>>::SPEC.name).map(filled),)*
@@ -106,7 +106,7 @@ macro_rules! effects {
                 }
             }
 
-            /// Whether what the effect at a place of the table adds is torque of the motor.
+            /// Returns whether what the effect at a place of the table adds is torque of the motor.
             pub fn acts_on_joint(&self, place: usize) -> bool {
                 let acts = [$(self.$effect.as_ref().is_some_and(|settings| {
                     <$effect::$law<f64> as DeviceEffect<f64>>::target_of(settings) == Target::Joint
@@ -132,7 +132,7 @@ macro_rules! effects {
                 })
             }
 
-            /// What differs from `now`, or from how the joint is seen `now`.
+            /// Differences from `now`, or from how the joint is seen `now`.
             ///
             /// # Errors
             /// As [`Self::laws`].
@@ -157,7 +157,7 @@ macro_rules! effects {
         }
 
         impl<F: Real> Added<F> {
-            /// Nothing.
+            /// No contribution.
             pub const NONE: Self = Self { $($effect: F::ZERO,)* };
 
             /// The same in f64.
@@ -165,7 +165,7 @@ macro_rules! effects {
                 Added { $($effect: self.$effect.to_f64(),)* }
             }
 
-            /// Of those that render a disorder, N·m.
+            /// Sum of the contributions of effects that render a disorder, N·m.
             pub fn symptoms_nm(&self) -> F {
                 [$((<$effect::$law<F> as DeviceEffect<F>>::IS_SYMPTOM, self.$effect)),*]
                     .into_iter()
@@ -173,7 +173,7 @@ macro_rules! effects {
                     .fold(F::ZERO, |sum, (_, nm)| sum + nm)
             }
 
-            /// Of the effect at a place of the table.
+            /// Contribution of the effect at a place of the table.
             pub fn get(&self, place: usize) -> Option<F> {
                 [$(self.$effect),*].get(place).copied()
             }
@@ -252,7 +252,7 @@ macro_rules! effects {
         }
 
         impl<F: Real> SwitchedEffects<F> {
-            /// Without any.
+            /// Returns the effects with none of them on.
             pub fn new(slew_nm: F, timing: &Timing) -> Self {
                 Self {
                     on: 0,
@@ -263,7 +263,7 @@ macro_rules! effects {
                 }
             }
 
-            /// From the next tick on, these laws, and this slew limit.
+            /// Applies these laws and this slew limit from the next tick on.
             pub fn change(&mut self, changes: &EffectChanges<F>, slew_nm: F) {
                 $(self.$symptom.change(&changes.$symptom, slew_nm);)*
                 $(self.$addition.change(&changes.$addition, slew_nm);)*

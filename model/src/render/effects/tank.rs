@@ -20,7 +20,7 @@ use crate::real::Real;
 pub struct Tank<F> {
     capacity_j: F,
     refill_j: F,
-    /// Of the output, per joule: reaches 1 at half the capacity.
+    /// Share of the output, per joule: reaches 1 at half the capacity.
     share_per_j: F,
     pub(super) level_j: F,
     /// The last output torques, the latest first.

@@ -144,7 +144,7 @@ pub struct Texture<F> {
     /// The number of the last asperity: the one below.
     number: i32,
     pair: Pair<F>,
-    /// Where the joint was seen last.
+    /// Place where the joint was seen last.
     at: Position<F>,
 }
 
@@ -506,7 +506,8 @@ impl<F: Real> Texture<F> {
             .follow_to(&end, (travel, part), with.stiffness, limits, &mut ())
     }
 
-    /// After a gap the joint may lie several asperities on: no snap of each, late.
+    /// Puts the play at the joint's present place, which after a gap may lie several asperities on: no
+    /// late snap of each.
     #[cold]
     fn land(&mut self, nm: F, travel: &Travel<F>) -> F {
         self.seek(&travel.to);

@@ -1,4 +1,4 @@
-//! What holds between the symptoms that a device renders at once.
+//! Rules between the symptoms that a device renders at once.
 
 use super::EffectSettings;
 use crate::joint::{MOST_STIFFNESS_NM_PER_RAD, Parameters, SettingsError};

@@ -164,14 +164,14 @@ settings! {
 /// 2·sin(3π/8).
 const BUTTERWORTH: [f64; 2] = [0.765_366_864_730_179_5, 1.847_759_065_022_573_5];
 
-/// Where reductions begin, as a share of a limit.
+/// Share of a limit at which reductions begin.
 const BEGINS_AT: f64 = 0.8;
 
 /// Time constant of the mean square of the current, s: estimate for a coil of a few
 /// grams of copper.
 pub const HEATING_S: f64 = 10.0;
 
-/// How fast the gain grows and falls, 1/s: a fade of 50 ms.
+/// Rate at which the gain rises and falls, 1/s: a fade of 50 ms.
 const FADE_PER_S: f64 = 20.0;
 
 /// The share of the stroke that is not left to the motion of what carries the mass.
@@ -207,7 +207,7 @@ impl VibrationActuatorSettings {
         STROKE_SHARE * self.stroke_mm * 1e-3 - self.sag_m()
     }
 
-    /// How far its weight moves the mass at most, m.
+    /// Largest displacement of the mass by its weight, m.
     fn sag_m(&self) -> f64 {
         let omega = self.resonance_rad_s();
         STANDARD_GRAVITY / (omega * omega)
@@ -273,7 +273,7 @@ struct Parts<F> {
 }
 
 impl<F: Real> Follower<F> {
-    /// Of a frequency, rad/s, and 2ζ.
+    /// Follower with this frequency, rad/s, and 2ζ.
     fn new(omega: f64, two_zeta: f64, step_s: f64) -> Self {
         let oscillator = Oscillator::<F>::of(&Parameters {
             inertia_kg_m2: 1.0,
@@ -308,7 +308,7 @@ impl<F: Real> Follower<F> {
 }
 
 impl<F: Real> Following<F> {
-    /// As if this had been the input for ever.
+    /// State as if this had been the input for ever.
     #[inline]
     fn at(input: F) -> Self {
         Self {
@@ -319,7 +319,7 @@ impl<F: Real> Following<F> {
     }
 }
 
-/// What a commit replaces.
+/// Coefficients that a commit replaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients<F> {
     gain: F,
@@ -332,7 +332,7 @@ pub struct Coefficients<F> {
 struct Design<F> {
     high_pass: Follower<F>,
     equaliser: Follower<F>,
-    /// What the equaliser adds of its rate, and of its low-pass.
+    /// Factors of its rate, and of its low-pass, that the equaliser adds.
     of_rate: F,
     of_low: F,
     volts_per_nm: F,
@@ -499,7 +499,7 @@ impl<F: Real> VibrationActuator<F> {
         volts
     }
 
-    /// As if the knee had shown this torque for ever; the coil stays warm.
+    /// Resets the state as if the knee had shown this torque for ever; the coil stays warm.
     #[cold]
     #[inline(never)]
     fn rest(&mut self, torque_nm: F) {
@@ -520,7 +520,7 @@ impl<F: Real> VibrationActuator<F> {
         };
     }
 
-    /// What the limits leave of a command, V.
+    /// Command as the limits leave it, V.
     #[inline]
     fn limited(&mut self, wanted_v: F) -> F {
         let steep = F::from_f64(1.0 / (1.0 - BEGINS_AT));
@@ -577,11 +577,11 @@ impl<F: Real> VibrationActuator<F> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exchanged<F> {
     law: Option<VibrationActuator<F>>,
-    /// What comes then.
+    /// Successor of the law once that is silent.
     next: Option<Next<F>>,
 }
 
-/// What follows on a law that has faded out.
+/// Successor of a law that has faded out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Next<F> {
     Nothing,

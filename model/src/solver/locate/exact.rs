@@ -153,7 +153,7 @@ mod tests {
     use crate::solver::propagate::Exact;
     use crate::{Settings, StepCoefficients};
 
-    /// When T(u) = torque + rate·u + curvature·u²/2 reaches 0.5 N·m within a
+    /// Time at which T(u) = torque + rate·u + curvature·u²/2 reaches 0.5 N·m within a
     /// second, and its mirror image −0.5 N·m.
     fn reaches([torque_nm, rate, curvature]: [f64; 3], limit: f64) -> Option<f64> {
         let path = |s: f64| StickPath {
@@ -275,7 +275,7 @@ mod tests {
         assert_eq!(meets(8.1e-6, -0.8, 1e-4), None);
     }
 
-    /// What most ticks in stick are.
+    /// Case of most ticks in stick.
     #[test]
     fn a_stick_that_cannot_reach_its_limit_costs_no_root() {
         let f = Counted::from_f64;
@@ -294,7 +294,7 @@ mod tests {
         }
     }
 
-    /// And most in a slip: velocities that are further apart than what lies between can bend.
+    /// Case of most ticks in a slip: velocities that are further apart than what lies between can bend.
     #[test]
     fn a_slip_that_cannot_meet_costs_no_trial_point() {
         let f = Counted::from_f64;

@@ -1,4 +1,4 @@
-//! Only the break is located, as the root of its parabola; a slip ends at the
+//! Location of the break alone, as the root of its parabola; a slip ends at the
 //! end of the step in which the velocities have met.
 //!
 //! The match needs no more for second order: it is a smooth contact, v = Ω on

@@ -94,7 +94,7 @@ fn first_reach<F: Real>(path: &StickPath<F, Quadratic<F>>, limit_nm: F, length_s
     None
 }
 
-/// When a torque that leaves its limit inwards, or along it, is back there on
+/// Time at which a torque that leaves its limit inwards, or along it, is back there on
 /// its way out: the first u ≥ 0 from which on rate + T̈·u/2 + T⃛·u²/6 is above
 /// zero.
 fn way_back<F: Real>(path: &StickPath<F, Quadratic<F>>) -> Option<F> {
@@ -126,7 +126,7 @@ mod tests {
         }
     }
 
-    /// When the cubic reaches `limit` within a second, and its mirror image
+    /// Time at which the cubic reaches `limit` within a second, and its mirror image
     /// −`limit`.
     fn reaches(path: [f64; 4], limit: f64) -> Option<f64> {
         let found = ExactHermite::break_time(&cubic(path), Sense::Positive, limit, 1.0);

@@ -40,7 +40,7 @@ impl<F: Real> Locate<F> for Interpolated {
     }
 }
 
-/// Where the chord from `start` to `end` < 0 is zero; 0 if `start` is below.
+/// Zero crossing of the chord from `start` to `end` < 0; 0 if `start` is below.
 #[inline]
 fn crossing<F: Real>(start: F, end: F, length_s: F) -> Option<F> {
     if end >= F::ZERO {

@@ -126,7 +126,7 @@ impl<F: Real> Caught<F> {
     #[inline]
     pub(super) fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let nm = match &mut self.catch {
-            Some(_) => self.go_on(travel, on_change),
+            Some(_) => self.follow_catch(travel, on_change),
             None => self.wait(travel, on_change),
         };
         self.torque_nm = self.with.threshold.sense * nm;
@@ -235,7 +235,7 @@ impl<F: Real> Caught<F> {
     }
 
     #[inline]
-    fn go_on(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
+    fn follow_catch(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let Some(mut catch) = self.catch else {
             return F::ZERO;
         };

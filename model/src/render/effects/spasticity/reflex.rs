@@ -73,7 +73,7 @@ impl<F: Real> ReflexCoefficients<F> {
     }
 }
 
-/// What the muscle is told.
+/// Regime of u, the muscle's input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Drive {
     Silent,
@@ -88,10 +88,10 @@ pub(super) struct Reflex<F> {
     /// u of the last ticks, the latest at `latest`.
     line: [F; REMEMBERED],
     latest: usize,
-    /// So many of them are of this stretch.
+    /// Number of entries of `line` that are of this stretch.
     remembered: usize,
     /// u(t − τd) at the end of the last tick, N·m.
-    told_nm: F,
+    delayed_nm: F,
     /// e, by how much y differs from it, N·m.
     lag_nm: F,
     drive: Drive,
@@ -104,7 +104,7 @@ impl<F: Real> Reflex<F> {
             line: [F::ZERO; REMEMBERED],
             latest: 0,
             remembered: 0,
-            told_nm: F::ZERO,
+            delayed_nm: F::ZERO,
             lag_nm: F::ZERO,
             drive: Drive::Silent,
         }
@@ -112,13 +112,13 @@ impl<F: Real> Reflex<F> {
 
     pub(super) fn rest(&mut self) {
         self.remembered = 0;
-        self.told_nm = F::ZERO;
+        self.delayed_nm = F::ZERO;
         self.lag_nm = F::ZERO;
         self.drive = Drive::Silent;
     }
 
     pub(super) fn torque_nm(&self) -> F {
-        self.with.threshold.sense * (self.told_nm + self.lag_nm)
+        self.with.threshold.sense * (self.delayed_nm + self.lag_nm)
     }
 
     pub(super) fn phase(&self) -> u16 {
@@ -133,13 +133,13 @@ impl<F: Real> Reflex<F> {
         if with.threshold.sense == self.with.threshold.sense {
             self.with = with;
         } else {
-            // What the other muscles were told is not for these.
+            // The input of the other muscles is not for these.
             *self = Self::new(with);
         }
     }
 
     pub(super) fn release(&mut self, slew_nm: F) {
-        let answer_nm = self.told_nm + self.lag_nm;
+        let answer_nm = self.delayed_nm + self.lag_nm;
         self.lag_nm -= answer_nm.within(slew_nm);
     }
 
@@ -183,11 +183,11 @@ impl<F: Real> Reflex<F> {
     #[inline]
     fn answer(&mut self, nm: F) {
         self.remember(nm);
-        let told_nm = self.told();
+        let delayed_nm = self.delayed();
         let with = &self.with;
         let left_nm = self.lag_nm - with.lost * self.lag_nm;
-        self.lag_nm = (left_nm - with.mean * (told_nm - self.told_nm)).settled();
-        self.told_nm = told_nm;
+        self.lag_nm = (left_nm - with.mean * (delayed_nm - self.delayed_nm)).settled();
+        self.delayed_nm = delayed_nm;
     }
 
     #[inline]
@@ -201,7 +201,7 @@ impl<F: Real> Reflex<F> {
 
     /// u(t − τd), N·m.
     #[inline]
-    fn told(&self) -> F {
+    fn delayed(&self) -> F {
         let late = self.ago(self.with.delay);
         if self.with.delay_rest == F::ZERO {
             return late;

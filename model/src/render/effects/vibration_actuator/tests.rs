@@ -11,7 +11,7 @@ fn actuator<F: Real>(settings: &VibrationActuatorSettings) -> VibrationActuator<
     crate::render::effects::tests::law(settings)
 }
 
-/// At full gain from the first tick on, at rest before.
+/// Returns an actuator at full gain from the first tick on, at rest before.
 fn faded_in<F: Real>(settings: &VibrationActuatorSettings) -> VibrationActuator<F> {
     let mut law = actuator(settings);
     law.tick(F::ZERO, true);
