@@ -265,7 +265,7 @@ impl Drive {
         self.command.coil().fault()
     }
 
-    /// Whether arming waits for the enable line of comms, or has it.
+    /// Returns whether arming waits for the enable line of comms, or has it.
     pub fn awaits_comms(&self) -> bool {
         self.command.safety().awaits_comms()
     }

@@ -33,7 +33,7 @@ pub const RECORDS_PER_SECTOR: usize = SLOTS_PER_SECTOR - 1;
 const SLOTS_PER_SECTOR: usize = SECTOR_BYTES / SLOT_BYTES;
 const SLOTS: usize = 2 * SLOTS_PER_SECTOR;
 
-/// In the first slot of a sector whose erasure was completed.
+/// Seal in the first slot of a sector whose erasure was completed.
 const SEAL: [u8; 8] = *b"CRPerase";
 
 /// The two sectors.

@@ -10,7 +10,7 @@ const SOFTWARE_WATCHDOG: u32 = 1 << 5;
 /// Result of the tests at the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SelfTest {
-    /// Nothing is wrong.
+    /// No error.
     #[default]
     Passed,
     /// Flash does not hold the image that was sealed.

@@ -36,7 +36,7 @@ use usb_device::prelude::{
 };
 use usbd_serial::{SerialPort, USB_CLASS_CDC};
 
-/// What the bus supplies, mA: the host's side of the isolator.
+/// Current that the bus supplies, mA: the host's side of the isolator.
 const ISOLATOR_MA: usize = 20;
 
 /// The largest packet of a full-speed bulk endpoint, bytes.
@@ -186,7 +186,7 @@ impl<'b, B: UsbBus> UsbPort<'b, B> {
             .read(EndpointAddress::from(CONTROL_OUT), &mut packet);
     }
 
-    /// Whether a host has configured the device, so that bytes can move.
+    /// Returns whether a host has configured the device, so that bytes can move.
     pub fn is_configured(&self) -> bool {
         self.device.state() == UsbDeviceState::Configured
     }

@@ -16,7 +16,7 @@ use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 use support::{Bench, Boots, TICKS_PER_MS};
 
-/// Of each scene, ms.
+/// Length of each scene, ms.
 const LENGTH_MS: u32 = 2_000;
 
 /// The device's columns of a trace row.

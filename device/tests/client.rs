@@ -41,7 +41,7 @@ fn the_example_client_communicates_with_a_device() {
     assert_eq!(bench.drive.counters().get(DriveCounter::Armings), 0);
 }
 
-/// With the nonce of its session, renewing its lease, disarming at the end.
+/// The client arms with the nonce of its session, renews its lease and disarms at the end.
 #[test]
 fn the_example_client_arms_a_device() {
     let Some(bench) = run(&["--arm"]) else { return };

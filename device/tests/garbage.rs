@@ -195,7 +195,7 @@ fn a_longer_management_request_is_answered() {
     }
 }
 
-/// Arming waits until the drive has told its version: another one might take a frame for
+/// Arming waits until the drive has reported its version: another one might take a frame for
 /// something else.
 #[test]
 fn a_drive_of_unknown_version_is_not_armed() {

@@ -23,7 +23,7 @@ pub struct PlayedChirp {
 }
 
 impl PlayedChirp {
-    /// What the generator takes.
+    /// Settings for the generator.
     pub fn settings(&self) -> ChirpSettings {
         ChirpSettings {
             amplitude_v: f32::from(self.amplitude_mv) / 1000.0,

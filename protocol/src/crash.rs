@@ -81,7 +81,7 @@ pub enum Controller {
 /// A part of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Part {
-    /// Which one, from 0 on.
+    /// Index of the part, from 0 on.
     pub number: u8,
     /// Its words; 0 beyond the end. `None`: there is no record, or no such part.
     pub words: Option<[u32; PART_WORDS]>,
@@ -112,7 +112,7 @@ impl Part {
 }
 
 crepitus_model::named! {
-    /// How a program ended.
+    /// Kind of end of a program.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
     pub enum End {
         /// A panic; the detail is the line.
@@ -195,7 +195,7 @@ impl Tick {
 pub struct Head {
     /// Boot counter of the program that ended.
     pub start: u16,
-    /// How it ended.
+    /// Kind of its end.
     pub end: End,
     /// Depends on the end.
     pub detail: u32,
@@ -236,7 +236,7 @@ impl Head {
         words
     }
 
-    /// Of the first words of a record; `None` if they are none.
+    /// Decodes the first words of a record; `None` if they are invalid.
     pub fn of(words: &[u32]) -> Option<Self> {
         let words = words.first_chunk::<HEAD_WORDS>()?;
         let [first, detail, ..] = *words;

@@ -204,7 +204,7 @@ impl Decoder {
         rest
     }
 
-    /// Before the first byte of a frame.
+    /// Resets the decoder before the first byte of a frame.
     #[inline]
     fn begin(&mut self) {
         if self.length == 0 {
@@ -414,7 +414,7 @@ mod tests {
             prop_assert_eq!(bodies.last(), Some(&body(length)));
         }
 
-        /// Whatever stands between two delimiters: a body is found where `cobs`
+        /// Checks that, whatever stands between two delimiters, a body is found where `cobs`
         /// finds one, the same.
         #[test]
         fn finds_what_cobs_finds(mut frame: Vec<u8>, whole in any::<bool>()) {

@@ -619,7 +619,7 @@ impl Fault {
         self as u8
     }
 
-    /// Whether the encoder's counts may be wrong after it, and the angle's zero with
+    /// Returns whether the encoder's counts may be wrong after it, and the angle's zero with
     /// them.
     pub const fn doubts_angle(self) -> bool {
         matches!(

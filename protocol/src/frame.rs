@@ -57,7 +57,7 @@ impl Checksum {
         self.0 = !digest.finalize();
     }
 
-    /// With whole words by a unit.
+    /// [`Self::update`] with whole words by a unit.
     #[inline]
     pub(crate) fn update_by(&mut self, unit: &mut impl WordCrc, bytes: &[u8]) {
         let (words, rest) = bytes.as_chunks();
@@ -86,7 +86,7 @@ pub trait WordCrc {
     fn update(&mut self, register: u32, words: &[[u8; WORD]]) -> u32;
 }
 
-/// In software.
+/// Implementation in software.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SoftwareCrc;
 

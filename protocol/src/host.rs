@@ -75,9 +75,9 @@ pub enum Operation {
     /// Reads a part of a controller's post-mortem record, of the drive while it is not
     /// armed. → [`Answer::CrashPart`]
     ReadCrash {
-        /// Whose.
+        /// Controller whose record is read.
         controller: Controller,
-        /// Which part, from 0 on.
+        /// Index of the part, from 0 on.
         part: u8,
     },
     /// Plays a chirp on the coil of the vibration actuator instead of its command, while
@@ -130,7 +130,7 @@ pub enum Answer {
     },
     /// The session is open.
     Opened {
-        /// To be repeated in each request.
+        /// Nonce to repeat in each request.
         nonce: Nonce,
     },
     /// A part of a post-mortem record.
@@ -165,7 +165,7 @@ pub struct Status {
     /// Whether the push at arming has proven that encoder and motor turn the
     /// same way; with a leg that is held it proves nothing.
     pub polarity_proven: bool,
-    /// What the drive measures beside the motion.
+    /// Measurements of the drive beside the motion.
     pub measured: Measured,
     /// Code of the fault of the vibration actuator's coil, 0 for none: the motor goes on.
     pub coil_fault: u8,
@@ -176,9 +176,9 @@ pub struct Status {
 /// [`COMMS_COUNTERS`](crate::counters::COMMS_COUNTERS).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, MaxSize, Schema)]
 pub struct Counters {
-    /// Of the drive, as of its last status.
+    /// Counters of the drive, as of its last status.
     pub drive: [u32; DRIVE_COUNT],
-    /// Of comms.
+    /// Counters of comms.
     pub comms: [u32; COMMS_COUNT],
 }
 

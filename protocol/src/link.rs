@@ -37,7 +37,7 @@ pub enum ToDrive {
         revision: Revision,
         /// Seal over all values of the commit, of this start of comms.
         seal: u32,
-        /// How many pieces are sent; what is in none is at its default.
+        /// Number of pieces sent; a value that is in none of them is at its default.
         pieces: u8,
         /// Some of the values.
         piece: Piece,
@@ -54,7 +54,7 @@ pub enum ToDrive {
     /// Asks a drive that is not armed for a part of its post-mortem record, which
     /// [`FromDrive::CrashPart`] answers.
     ReadCrash {
-        /// Which part.
+        /// Index of the part.
         part: u8,
     },
 }
@@ -156,7 +156,7 @@ pub struct DriveStatus {
     pub polarity_proven: bool,
     /// Arming has come to where it needs the enable line of comms.
     pub awaits_comms: bool,
-    /// What it measures beside the motion.
+    /// Measurements of the drive beside the motion.
     pub measured: Measured,
     /// The drive's counters.
     pub counters: [u32; DRIVE_COUNT],

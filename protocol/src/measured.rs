@@ -1,4 +1,4 @@
-//! What the drive measures beside the motion.
+//! Measurements of the drive beside the motion.
 
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
@@ -18,7 +18,7 @@ pub struct Measured {
     pub supply_cv: u16,
     /// Temperature of the motor, °C.
     pub motor_c: i16,
-    /// By how much the joint's sensor and the encoder have moved against each other
+    /// Movement of the joint's sensor and the encoder against each other
     /// since the angle's zero, 0.01°: backlash is not more. None without a sensor or
     /// a zero.
     pub joint_cdeg: Option<u16>,

@@ -91,7 +91,7 @@ pub struct Reassembly {
     comms_start: u16,
     /// Those of the pieces that have arrived; the others are at their defaults.
     values: [f64; PARAMETER_COUNT],
-    /// How many pieces there are.
+    /// Number of pieces.
     count: u8,
     /// One bit for each that has arrived.
     arrived: u32,
@@ -140,7 +140,7 @@ impl Reassembly {
         self.arrived |= 1_u32.unbounded_shl(piece.index.into());
     }
 
-    /// Whether every piece has arrived.
+    /// Returns whether every piece has arrived.
     pub fn is_complete(&self) -> bool {
         self.arrived.count_ones() == u32::from(self.count)
     }

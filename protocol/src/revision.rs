@@ -21,7 +21,7 @@ impl Revision {
         Self(self.0.checked_add(1).unwrap_or(1))
     }
 
-    /// Whether it comes before another, also where they wrap. [`Self::NONE`] has no place.
+    /// Returns whether it comes before another, also where they wrap. [`Self::NONE`] has no place.
     pub fn is_before(self, other: Self) -> bool {
         self.0.wrapping_sub(other.0).cast_signed() < 0
     }
@@ -46,14 +46,14 @@ impl fmt::Display for Session {
 }
 
 /// Number that the device draws when a host opens its session. Each request
-/// repeats it, so that nothing sent before is obeyed after a restart.
+/// repeats it, so that nothing sent before is executed after a restart.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
 )]
 pub struct Nonce(pub u32);
 
 impl Nonce {
-    /// Of a session that is not open; never drawn.
+    /// Nonce of a session that is not open; never drawn.
     pub const NONE: Self = Self(0);
 }
 

@@ -111,7 +111,7 @@ impl CoilCurrent {
     /// None was measured.
     pub const NONE: Self = Self(NO_CURRENT);
 
-    /// In A.
+    /// Returns the current, A; `None` if none was measured.
     pub fn amperes(self) -> Option<f32> {
         (self != Self::NONE).then(|| f32::from(self.0) * 1e-3)
     }
@@ -151,7 +151,7 @@ impl SampleFlags {
         Self(if set { self.0 | bits } else { self.0 & !bits })
     }
 
-    /// Whether one of these bits is set.
+    /// Returns whether one of these bits is set.
     pub fn has(self, bits: u16) -> bool {
         self.0 & bits != 0
     }
@@ -255,7 +255,7 @@ impl BlockFlags {
             .unwrap_or_default()
     }
 
-    /// Whether counts are relative to a zero that was set.
+    /// Returns whether counts are relative to a zero that was set.
     pub fn is_zeroed(self) -> bool {
         self.0 & Self::ZEROED != 0
     }

@@ -51,7 +51,7 @@ impl Cell {
         }
     }
 
-    /// For people.
+    /// Returns the text for people.
     pub(crate) fn to_text(&self, show: Option<Show>) -> String {
         #[expect(clippy::cast_precision_loss, reason = "rounded for people")]
         match (self, show) {
@@ -83,7 +83,7 @@ impl Serialize for Cell {
     }
 }
 
-/// With as many digits as read back to the same bits.
+/// Appends a number, with as many digits as read back to the same bits.
 fn push_number(text: &mut String, x: f64) {
     if x.is_finite() {
         text.push_str(ryu::Buffer::new().format_finite(x));
@@ -94,7 +94,7 @@ fn push_number(text: &mut String, x: f64) {
     }
 }
 
-/// In quotes where it needs them.
+/// Appends words, in quotes if they need them.
 fn push_quoted(text: &mut String, words: &str) {
     if words.contains([',', '"', '\n', '\r']) {
         text.push('"');

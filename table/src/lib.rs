@@ -42,9 +42,9 @@ pub struct Table<'r, R> {
 
 #[derive(Clone, Debug)]
 struct Column {
-    /// In files; none if it is for people only.
+    /// Name in files; none if the column is for people only.
     name: Option<&'static str>,
-    /// For people; none if it is for files only.
+    /// Heading for people; none if the column is for files only.
     heading: Option<String>,
     /// Heading over this and its neighbours of the same group.
     group: &'static str,
@@ -88,7 +88,7 @@ impl<'r, R> Table<'r, R> {
         self.push(None, Some(heading.into()), &|row| cell(row).into())
     }
 
-    /// Not generic over the cell: hundreds of columns would be compiled one by one.
+    /// Adds a column. Not generic over the cell: hundreds of columns would be compiled one by one.
     fn push(
         mut self,
         name: Option<&'static str>,
@@ -145,7 +145,7 @@ impl<'r, R> Table<'r, R> {
         self
     }
 
-    /// For people, a row with a remark has it in place of its cells from here
+    /// Gives rows a remark, which people see in place of the row's cells from here
     /// on: why there are none.
     #[must_use]
     pub fn remark(mut self, text: impl Fn(&'r R) -> Option<String>) -> Self {

@@ -1,12 +1,12 @@
 //! Numbers for people: rounded, a dash where they are not known.
 
-/// How people see the numbers of a column.
+/// Format of a column's numbers for people.
 pub type Show = fn(f64) -> String;
 
 /// A number that is not known.
 pub const UNKNOWN: &str = "–";
 
-/// With this many decimals.
+/// A number with this many decimals.
 pub fn fixed<const DECIMALS: usize>(x: f64) -> String {
     scaled::<1, DECIMALS>(x)
 }
@@ -32,7 +32,7 @@ pub fn milli(nm: f64) -> String {
     }
 }
 
-/// With two digits and a power of ten: `4.1e-5`.
+/// A number with two digits and a power of ten: `4.1e-5`.
 pub fn scientific(x: f64) -> String {
     if x.is_nan() {
         UNKNOWN.to_owned()

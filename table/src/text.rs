@@ -3,7 +3,7 @@
 use crate::{Column, Table, groups};
 use std::fmt::Write;
 
-/// Between columns.
+/// Number of spaces between columns.
 const GAP: usize = 2;
 
 impl<R> Table<'_, R> {

@@ -4,7 +4,7 @@
 #[derive(Clone, Debug)]
 pub(super) struct ByteRing<const N: usize> {
     bytes: [u8; N],
-    /// Where the oldest byte is, below `N`.
+    /// Index of the oldest byte, below `N`.
     begin: usize,
     /// Bytes in it, at most `N`.
     length: usize,
@@ -20,7 +20,7 @@ impl<const N: usize> ByteRing<N> {
         }
     }
 
-    /// How many bytes are in it.
+    /// Number of bytes in the queue.
     pub(super) fn len(&self) -> usize {
         self.length
     }

@@ -9,7 +9,7 @@ use crepitus_protocol::{Revision, State, ValueError};
 /// Timeout: without a block for this long the drive counts as silent, ms.
 pub const SILENT_MS: u64 = 5;
 
-/// How a block continues the stream before it.
+/// Continuity of a block with the stream before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Continuity {
     /// A new block.
@@ -105,7 +105,7 @@ impl DriveView {
         self.start
     }
 
-    /// Whether blocks arrive within the timeout.
+    /// Returns whether blocks arrive within the timeout.
     pub fn is_present(&self, now_ms: u64) -> bool {
         self.last_block_ms
             .is_some_and(|last_ms| now_ms.saturating_sub(last_ms) < SILENT_MS)
@@ -132,7 +132,7 @@ impl DriveView {
         self.status.map_or(State::Disarmed, |status| status.state)
     }
 
-    /// Whether its arming waits for the enable line of comms, or has it.
+    /// Returns whether its arming waits for the enable line of comms, or has it.
     pub fn awaits_comms(&self) -> bool {
         self.status.is_some_and(|status| status.awaits_comms)
     }

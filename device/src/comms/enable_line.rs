@@ -54,7 +54,7 @@ impl EnableLine {
         }
     }
 
-    /// Whether the line has passed its test.
+    /// Returns whether the line has passed its test.
     pub fn is_tested(&self) -> bool {
         matches!(self.step, Step::Tested | Step::On)
     }
@@ -91,7 +91,7 @@ impl EnableLine {
 mod tests {
     use super::*;
 
-    /// What comes of a line that follows a millisecond late, or is stuck.
+    /// Outcome of the test of a line that follows a millisecond late, or is stuck.
     fn prove(stuck: Option<bool>) -> (Option<Fault>, bool, u32) {
         let mut line = EnableLine::default();
         let mut is_on = stuck.unwrap_or(false);

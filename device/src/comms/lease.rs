@@ -34,7 +34,7 @@ impl Lease {
             .map(|holder| holder.session)
     }
 
-    /// Whether a host holds the lease.
+    /// Returns whether a host holds the lease.
     pub fn is_alive(&self, now_ms: u64) -> bool {
         self.holder(now_ms).is_some()
     }

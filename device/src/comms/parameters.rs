@@ -199,7 +199,7 @@ mod tests {
         assert_eq!(parameters.bounds_in_force(), without);
     }
 
-    /// From 4.5 to 1 N·m takes 35 ms at 100 N·m/s.
+    /// A change from 4.5 to 1 N·m takes 35 ms at 100 N·m/s.
     #[test]
     fn a_drive_that_says_for_ever_that_it_settles_is_not_believed() {
         let mut values = Values::default();

@@ -269,7 +269,7 @@ impl Comms {
         Ok(Started::Pending(JobState::ProveLine))
     }
 
-    /// Only the holder of the lease: without one nobody watches what moves.
+    /// Plays a chirp for the holder of the lease only: without a holder nobody watches what moves.
     fn play_chirp(&mut self, request: &Request, chirp: PlayedChirp) -> StartResult {
         self.check_lease(request.session)?;
         if self.lease.holder(self.now_ms).is_none() {
@@ -401,7 +401,7 @@ impl Comms {
         self.reply(job.session, job.number, answer);
     }
 
-    /// What is to be saved now: the committed values with the revision that they have
+    /// Takes the save that is due: the committed values with the revision that they have
     /// now, as a drive that restarts gives them another one.
     pub(super) fn take_save(&mut self) -> Option<(Revision, Values)> {
         if !core::mem::take(&mut self.save_is_due) {

@@ -87,7 +87,7 @@ pub struct SampleChecks {
     deviation: Deviation,
     outside: u32,
     astray: u32,
-    /// In parts of a lost sample that one with a count makes up for.
+    /// Debounce count of lost samples, in the parts of one that a sample with a count makes up for.
     lost: u32,
     fast_blocks: u32,
     /// The block before was of a drive that said it was armed.

@@ -2,7 +2,7 @@
 //!
 //! A request of a session that is not open, or with an old nonce, is not
 //! executed. So nothing that was sent before a restart of comms, or before the
-//! session was opened last, is ever obeyed again.
+//! session was opened last, is ever executed again.
 //!
 //! The last sequence number and reply of each session are stored: a repeated
 //! request gets the stored reply, an older one is ignored. Renewals have the same numbers and
@@ -26,7 +26,7 @@ pub enum RequestClass {
     Repeat(Reply),
     /// Older, or still being carried out.
     Ignore,
-    /// Of a session that is not open, or with an old nonce.
+    /// Belongs to a session that is not open, or has an old nonce.
     NotOpen,
 }
 
@@ -37,7 +37,7 @@ pub enum RenewalClass {
     New,
     /// Repeated or older.
     Ignore,
-    /// Of a session that is not open, or with an old nonce.
+    /// Belongs to a session that is not open, or has an old nonce.
     NotOpen,
 }
 
@@ -51,7 +51,7 @@ struct Entry {
     /// None while it is being carried out.
     reply: Option<Reply>,
     is_subscribed: bool,
-    /// When it was used last, in requests.
+    /// Time of its last use, in requests.
     used: u64,
 }
 
@@ -193,7 +193,7 @@ impl Sessions {
         }
     }
 
-    /// Whether a session has telemetry.
+    /// Returns whether a session has telemetry.
     pub fn has_subscriber(&self) -> bool {
         self.entries.iter().any(|entry| entry.is_subscribed)
     }

@@ -40,7 +40,7 @@ impl Supervision {
         }
     }
 
-    /// Whether a host has requested torque and no fault has ended the request.
+    /// Returns whether a host has requested torque and no fault has ended the request.
     pub fn is_enable_requested(&self) -> bool {
         self.enable_requested
     }
@@ -55,7 +55,7 @@ impl Supervision {
         self.line.level()
     }
 
-    /// Whether the enable line has passed its test.
+    /// Returns whether the enable line has passed its test.
     pub fn line_is_tested(&self) -> bool {
         self.line.is_tested()
     }

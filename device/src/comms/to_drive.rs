@@ -20,10 +20,10 @@ pub(super) struct ToDriveQueue {
     management: Option<ManagementRequest>,
     commit: CommitProgress,
     command_ms: Option<(u16, u64)>,
-    /// When it may be asked again for this.
+    /// Earliest time of the next question, ms.
     again_ms: u64,
     last_number: u16,
-    /// Of the last heartbeat.
+    /// Number of the last heartbeat.
     heartbeat: u8,
 }
 

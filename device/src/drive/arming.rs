@@ -149,7 +149,7 @@ impl Arming {
         }
     }
 
-    /// Whether it waits for the enable line of comms, or has it.
+    /// Returns whether it waits for the enable line of comms, or has it.
     pub fn awaits_comms(&self) -> bool {
         matches!(
             self.step,
@@ -215,7 +215,7 @@ impl Arming {
         (sensor_a * share, monitor_a * share)
     }
 
-    /// Whether the push has shown that encoder and motor turn the same way.
+    /// Returns whether the push has shown that encoder and motor turn the same way.
     pub fn is_proven(&self) -> bool {
         self.moved_counts >= PROOF_COUNTS
     }

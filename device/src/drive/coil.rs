@@ -282,7 +282,7 @@ impl Means {
         }
     }
 
-    /// Whether there is no current, or another one.
+    /// Returns whether there is no current, or another one.
     #[cold]
     fn does_not_follow(&self, plan: &CoilPlan) -> CoilFault {
         let whole_a2 = self.volts_squared * plan.per_ohm * plan.per_ohm;
@@ -302,7 +302,7 @@ fn held(ticks: u8, holds: bool) -> u8 {
 
 /// Bounds of the checks, from the settings of the actuator.
 impl CoilPlan {
-    /// Of an actuator that is fitted.
+    /// Computes the bounds for an actuator that is fitted.
     #[expect(clippy::cast_possible_truncation, reason = "rounded to f32, once")]
     pub fn new(
         s: &crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings,
@@ -318,9 +318,9 @@ impl CoilPlan {
         let m_per_v = s.force_constant_n_per_a / (s.resistance_ohm * s.stiffness_n_per_m());
         let most_m = CHIRP_STROKES * s.stroke_mm * 1e-3;
         let chirp_v = most_m * (2.0 * ratio).min(1.0) / m_per_v;
-        let told_v = f64::from(SENSOR_A) / LEAST_MARGIN * s.resistance_ohm - emf_v;
-        let told_v = told_v.max(PEAK_OF_COMPARED * compared_v2.sqrt());
-        let supplied_v = told_v.min(f64::from(LARGEST_COIL_DUTY) * s.supply_v);
+        let measurable_v = f64::from(SENSOR_A) / LEAST_MARGIN * s.resistance_ohm - emf_v;
+        let measurable_v = measurable_v.max(PEAK_OF_COMPARED * compared_v2.sqrt());
+        let supplied_v = measurable_v.min(f64::from(LARGEST_COIL_DUTY) * s.supply_v);
         let continuous_a2 = s.continuous_current_a * s.continuous_current_a;
         Self {
             supply_v: s.supply_v as f32,

@@ -96,7 +96,7 @@ pub struct Command {
     was_driven: bool,
     /// Consecutive ticks with a current while the bridge floats.
     conducting_ticks: u32,
-    /// For how long the enable line of comms was off.
+    /// Time for which the enable line of comms was off, in quarters of a tick.
     without_comms: u32,
     /// Revision of the active parameters.
     revision: Revision,
@@ -112,9 +112,9 @@ pub struct Command {
     /// Boot counter of the drive.
     start: u16,
     batch: Batch,
-    /// Only where there is one.
+    /// Coil of the vibration actuator, if there is one.
     coil: Coil,
-    /// What it plays instead of its command.
+    /// Chirp that the coil plays instead of its command.
     chirp: Option<Chirp>,
 }
 
@@ -236,7 +236,7 @@ impl Command {
         self.count.wrapping_sub(self.zero)
     }
 
-    /// Whether the angle's zero was set.
+    /// Returns whether the angle's zero was set.
     pub fn is_zeroed(&self) -> bool {
         self.zeroed
     }

@@ -104,7 +104,7 @@ impl EmfCheck {
         (self.volts_sum, self.current_sum_a) = (0.0, 0.0);
     }
 
-    /// Which way the window that ends now is beyond the slack; 0 if it is not.
+    /// Returns the sense in which the window that ends now is beyond the slack; 0 if it is not.
     #[inline(never)]
     fn beyond(&self, last: &Tick, motor: &MotorPlan, rad_per_count: f32) -> i8 {
         let mean_v = SHARE * self.volts_sum;

@@ -36,7 +36,7 @@ pub struct HeartbeatMonitor {
 /// Heartbeats that may be lost in a row: those of more than the timeout.
 const MOST_AHEAD: u8 = 127;
 
-/// Whether a message that echoes `seen_tick` is fresh at `now`.
+/// Returns whether a message that echoes `seen_tick` is fresh at `now`.
 pub fn is_fresh(now: u64, seen_tick: u64) -> bool {
     // A tick in the future is from before a restart of the drive.
     now.checked_sub(seen_tick)
@@ -74,12 +74,12 @@ impl HeartbeatMonitor {
         self.comms_start
     }
 
-    /// Whether the lease has not expired.
+    /// Returns whether the lease has not expired.
     pub fn is_leased(&self, now: u64) -> bool {
         self.last_tick.is_some() && now < self.lease_end
     }
 
-    /// Whether the timeout expired in an earlier tick.
+    /// Returns whether the timeout expired in an earlier tick.
     fn was_silent(&self, now: u64) -> bool {
         self.is_silent(now.saturating_sub(1))
     }

@@ -71,7 +71,7 @@ impl Link {
         self.status_due = true;
     }
 
-    /// Whether a management reply is pending.
+    /// Returns whether a management reply is pending.
     pub fn has_answer(&self) -> bool {
         self.answer.is_some()
     }
@@ -81,7 +81,7 @@ impl Link {
         self.answer.take()
     }
 
-    /// Whether a status is due.
+    /// Returns whether a status is due.
     pub fn is_status_due(&self, now: u64) -> bool {
         self.status_due || now >= self.next_status_tick
     }

@@ -320,7 +320,7 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
     }
 }
 
-/// As it is sent.
+/// Converts the readings to the form in which they are sent.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -126,7 +126,7 @@ impl Motor {
         self.current_loop.limited_by()
     }
 
-    /// Whether the limit of the voltage explains that the current is not the
+    /// Returns whether the limit of the voltage explains that the current is not the
     /// setpoint: on a shaft of this speed, so much voltage does not drive it. A
     /// loop whose sensor is broken ends at the limit, too, but with voltage to
     /// spare. A back-EMF beyond the limit excuses nothing: it drives a current that

@@ -81,7 +81,7 @@ pub fn last_phases(block: &Block) -> Option<&[EffectPhases; LAST_PHASES]> {
 #[derive(Debug)]
 pub struct Outgoing<P> {
     current: Option<Encoder<P>>,
-    /// Of the current frame.
+    /// Part of the current frame that is still to be encoded.
     rest: Rest,
     answer: AnswerBytes,
     status: DriveStatus,
@@ -105,7 +105,7 @@ impl<P> Default for Outgoing<P> {
 }
 
 impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
-    /// Whether no frame is in progress.
+    /// Returns whether no frame is in progress.
     pub fn is_idle(&self) -> bool {
         self.current.is_none()
     }

@@ -23,7 +23,7 @@ pub struct OverloadPlan {
 }
 
 impl OverloadPlan {
-    /// Of the current that may flow for ever, A, and the length of a tick, s.
+    /// Computes the coefficients from the current that may flow for ever, A, and the length of a tick, s.
     #[expect(clippy::cast_possible_truncation, reason = "rounded to f32, once")]
     pub fn new(continuous_a: f64, tick_s: f64) -> Self {
         let continuous_a2 = continuous_a * continuous_a;
@@ -128,7 +128,8 @@ mod tests {
         assert_eq!(until(0.95, constant(f32::NAN)), None);
     }
 
-    /// Whatever a motor bears for ever by its parameters, the gear bears its short-time torque for a second.
+    /// Checks that the gear bears its short-time torque for a second, whatever the motor bears
+    /// for ever by its parameters.
     #[test]
     fn no_parameter_switches_it_off() {
         let named = |spec: &&ParameterSpec| spec.key == "continuous_a";

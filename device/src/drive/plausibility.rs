@@ -156,7 +156,7 @@ pub struct Observation {
 /// The checks' debounce counters.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Plausibility {
-    /// For how long each condition has held, in [`TICK`]s.
+    /// Time for which each condition has held, in [`TICK`]s.
     held: [u16; CHECKS],
     late: Excess,
     speeds: Excess,

@@ -175,9 +175,9 @@ pub struct CommandPlan {
     pub speed_limit_rad_s: f32,
     /// Range of motion.
     pub range: RangePlan,
-    /// What changes slowly.
+    /// Quantities that change slowly.
     pub slow: SlowPlan,
-    /// What gear and motor bear.
+    /// Overload limits of gear and motor.
     pub overload: OverloadPlan,
     /// The coil of the vibration actuator, if there is one.
     pub coil: Option<CoilPlan>,
@@ -186,9 +186,9 @@ pub struct CommandPlan {
 /// Prepared parameters, for the tasks to apply.
 #[derive(Clone, Copy, Debug)]
 pub struct Prepared {
-    /// For `render_torque`.
+    /// Parameters for `render_torque`.
     pub rendering: RenderingPlan,
-    /// For `command_motor`.
+    /// Parameters for `command_motor`.
     pub command: CommandPlan,
 }
 

@@ -28,7 +28,7 @@ const LINE_TICKS: u32 = 9;
 /// Permitted output of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Permit {
-    /// Nothing: the line off, the bridge floating.
+    /// No output: the line off, the bridge floating.
     Nothing,
     /// The line on, the bridge floating.
     Line,
@@ -98,17 +98,17 @@ impl Safety {
         self.fault
     }
 
-    /// Whether the line may be on.
+    /// Returns whether the line may be on.
     pub fn is_live(&self) -> bool {
         matches!(self.state, State::Arming | State::Armed)
     }
 
-    /// Whether arming has shown that encoder and motor turn the same way.
+    /// Returns whether arming has shown that encoder and motor turn the same way.
     pub fn polarity_proven(&self) -> bool {
         self.polarity_proven
     }
 
-    /// Whether arming waits for the enable line of comms, or has it.
+    /// Returns whether arming waits for the enable line of comms, or has it.
     pub fn awaits_comms(&self) -> bool {
         self.state == State::Arming && self.arming.awaits_comms()
     }

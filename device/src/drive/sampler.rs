@@ -4,7 +4,7 @@ use crate::drive::prepare::Reader;
 use crepitus_model::Sample;
 use crepitus_model::control::encoder::EncoderReader;
 
-/// After this many consecutive implausible counts the reader restarts at the
+/// Number of consecutive implausible counts after which the reader restarts at the
 /// counter's value: the counter itself was disturbed.
 pub const LOST_TICKS: u32 = 20;
 

@@ -70,7 +70,7 @@ pub struct SlowReadings {
     pub supply_v: f32,
     /// Temperature of the motor, °C.
     pub motor_c: f32,
-    /// By how much the joint's sensor and the encoder have moved against each other
+    /// Span of the movement of the joint's sensor and the encoder against each other
     /// since the zero, share of a turn: backlash is not more. `None` without a sensor
     /// or a zero.
     pub joint_span: Option<f32>,
@@ -89,7 +89,7 @@ pub struct SlowChecks {
     high: u32,
     hot: u32,
     off: u32,
-    /// What the joint's sensor shows, and showed at the angle's zero.
+    /// Last reading of the joint's sensor, and its reading at the angle's zero.
     joint: Option<f32>,
     joint_zero: Option<f32>,
     /// Smallest and largest deviation since the zero, share of a turn.
@@ -97,7 +97,7 @@ pub struct SlowChecks {
 }
 
 impl SlowChecks {
-    /// Before the first reading.
+    /// Returns the checks before the first reading.
     pub fn new(plan: &SlowPlan) -> Self {
         Self {
             plan: *plan,

@@ -250,7 +250,7 @@ fn is_management(frame: &[u8]) -> bool {
     })
 }
 
-/// What the link carries in a tick.
+/// Takes from the queue what the link carries in a tick.
 fn drain(queue: &mut VecDeque<u8>) -> Vec<u8> {
     queue.drain(..LINK_BYTES.min(queue.len())).collect()
 }

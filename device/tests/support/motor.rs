@@ -25,7 +25,7 @@ pub(crate) struct Motor {
 }
 
 impl Motor {
-    /// At rest, with the counter of the encoder at `start`.
+    /// Returns a motor at rest, with the counter of the encoder at `start`.
     pub(crate) fn at(start: u32) -> Self {
         Self {
             start,

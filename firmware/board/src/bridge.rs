@@ -124,7 +124,7 @@ impl Bridge {
         self.timer.sr().write(|w| w.bif().clear());
     }
 
-    /// Whether the break has fired since the bridge floated last.
+    /// Returns whether the break has fired since the bridge floated last.
     pub fn break_has_fired(&self) -> bool {
         self.timer.sr().read().bif().bit()
     }

@@ -84,12 +84,12 @@ impl Coil {
         &self.timer
     }
 
-    /// Whether it was driven since the last tick: then there is a current to be read.
+    /// Returns whether it was driven since the last tick: then there is a current to be read.
     pub fn is_driven(&self) -> bool {
         self.is_driven
     }
 
-    /// Whether the break has fired since it was asleep.
+    /// Returns whether the break has fired since it was asleep.
     pub fn has_tripped(&self) -> bool {
         self.is_driven && self.timer.sr().read().bif().bit()
     }

@@ -87,7 +87,7 @@ const CONVERTER_CLOCK: u16 = 8;
 const SAMPLING: u16 = 3 * CONVERTER_CLOCK;
 const CONVERSION: u16 = SAMPLING + 12 * CONVERTER_CLOCK;
 
-/// From the first sampling to the end of the last conversion, and to the middle of all
+/// Time from the first sampling to the end of the last conversion, and to the middle of all
 /// samplings, in clocks of the core.
 pub(crate) const TO_END: u16 = SAMPLES as u16 * CONVERSION;
 pub(crate) const TO_MIDDLE: u16 = u16::midpoint(0, TO_END - CONVERSION + SAMPLING);

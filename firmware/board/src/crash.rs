@@ -63,7 +63,7 @@ impl Kept {
     }
 }
 
-/// As [`Kept::empty`].
+/// Returns the ring's initial value, as in [`Kept::empty`].
 pub(crate) const fn empty_ring() -> Ring {
     [const { [const { Word::new(0) }; TICK_WORDS] }; TICKS]
 }
@@ -72,7 +72,7 @@ pub(crate) const fn empty_ring() -> Ring {
 pub struct BlackBox(());
 
 impl BlackBox {
-    /// With no ticks yet.
+    /// Returns a black box with no ticks yet.
     pub(crate) fn new() -> Self {
         for slot in &raw::LAST_TICKS {
             store(slot, NO_TICK_WORDS);

@@ -165,7 +165,7 @@ impl Link {
         self.spare.iter_mut().find_map(Option::take)
     }
 
-    /// Whether a buffer is free.
+    /// Returns whether a buffer is free.
     pub fn can_send(&self) -> bool {
         self.spare.iter().any(Option::is_some)
     }

@@ -69,7 +69,7 @@ impl Region {
         }
     }
 
-    /// Only these eighths of it.
+    /// Restricts the region to these eighths of it.
     const fn only(mut self, eighths: u32) -> Self {
         self.attributes |= (!eighths & 0xff) << 8;
         self

@@ -10,7 +10,7 @@
 //! | [`dma_register`], [`dma_destination`] | the stream writes a `'static` buffer of atomic bytes in RAM that DMA reaches, within the length that `link.rs` sets |
 //! | [`dma_source`] | the stream reads a buffer that `link.rs` owns and keeps until the stream is done, in RAM that DMA reaches, within its length |
 //! | [`converter_channel`], [`injected_channel`] | a channel that the converter has, at most four times |
-//! | [`sleep`] | the compiler is told that the FPU's registers are lost |
+//! | [`sleep`] | the assembly declares that the FPU's registers are lost |
 //! | `HardFault` | the stack may be unusable, so its pointer is reset; never returns |
 //! | [`stack`], [`fault_registers`] | words of the stack's RAM, and registers whose reading has no effect |
 #![allow(unsafe_code)]

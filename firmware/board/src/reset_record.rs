@@ -16,7 +16,7 @@ pub const WORDS: usize = 5;
 
 const MAGIC: u32 = u32::from_le_bytes(*b"kept");
 
-/// Why a program has ended.
+/// Reason for the end of a program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reason {
     /// No reason was stored.
@@ -60,7 +60,7 @@ impl Reason {
 pub struct ResetRecord {
     /// Start counter.
     pub start: u16,
-    /// Why the program has ended.
+    /// Reason for the end of the program.
     pub reason: Reason,
     /// Depends on the reason.
     pub detail: u32,

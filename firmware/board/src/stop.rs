@@ -11,15 +11,15 @@ use cortex_m::peripheral::SCB;
 use cortex_m::register::msp;
 use crepitus_protocol::crash::{self as record, End, Head};
 
-/// How a program ends.
+/// End of a program.
 pub(crate) struct Ended {
     reason: Reason,
-    /// For the next start, and people.
+    /// Record for the next start, and for people.
     crash: Option<Head>,
 }
 
 impl Ended {
-    /// By a processor fault, whose frame is at this address: r0 to r3, r12, LR, PC,
+    /// End by a processor fault, whose frame is at this address: r0 to r3, r12, LR, PC,
     /// xPSR.
     pub(crate) fn by_fault(frame: u32) -> Self {
         let [_, _, _, _, _, lr, pc, xpsr] = raw::stack(frame);
@@ -34,7 +34,7 @@ impl Ended {
         }
     }
 
-    /// By an exception without a handler.
+    /// End by an exception without a handler.
     pub(crate) fn unhandled(number: u16) -> Self {
         Self {
             reason: Reason::Unhandled,
@@ -56,7 +56,7 @@ impl Ended {
     }
 }
 
-/// With the stack as it is.
+/// Returns the head of a record with the stack as it is.
 fn here(end: End, detail: u32) -> Head {
     let sp = msp::read();
     Head {

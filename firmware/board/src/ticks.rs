@@ -31,7 +31,7 @@ const COUNT_CLOCKS: u16 = 2;
 /// begin 1.14 µs before it.
 const CONVERTER_EARLY: u16 = converter::TO_MIDDLE / COUNT_CLOCKS;
 
-/// From the converters' start to `command_motor`: 3.2 µs. All conversions take 2.86.
+/// Counts from the converters' start to `command_motor`: 3.2 µs. All conversions take 2.86.
 const CONVERSION: u16 = 269;
 const _: () = assert!(CONVERSION * COUNT_CLOCKS > converter::TO_END + 48);
 

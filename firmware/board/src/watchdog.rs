@@ -46,7 +46,7 @@ impl<const N: usize> TaskCheckins<N> {
         }
     }
 
-    /// Whether all tasks have checked in; if so, clears the flags.
+    /// Returns whether all tasks have checked in; if so, clears the flags.
     fn take(&self) -> bool {
         let all = self.tasks.iter().all(|ran| ran.load(Ordering::Relaxed));
         if all {

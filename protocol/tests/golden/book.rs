@@ -127,7 +127,7 @@ fn lanes() -> String {
     text
 }
 
-/// How a frame comes about.
+/// Steps from a message to its frame.
 fn frame(example: &Example) -> String {
     let checksum = CRC.checksum(&example.body);
     format!(
@@ -218,7 +218,7 @@ fn parameters() -> String {
     text
 }
 
-/// As short as it reads back.
+/// Formats a number in the shortest form that reads back.
 fn number(value: f64) -> String {
     if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
         format!("{value:e}")

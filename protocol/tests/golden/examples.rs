@@ -31,7 +31,7 @@ pub(crate) struct Example {
     pub(crate) name: String,
     pub(crate) means: String,
     pub(crate) lane: Lane,
-    /// Of postcard messages.
+    /// Schema, if it is a postcard message.
     pub(crate) schema: Option<&'static NamedType>,
     /// Lane, tag, message.
     pub(crate) body: Vec<u8>,
@@ -227,7 +227,7 @@ const PART: Part = Part {
     ]),
 };
 
-/// What a drive with a joint's sensor measures.
+/// Measurements of a drive with a joint's sensor.
 const MEASURED: Measured = Measured {
     supply_cv: 2_397,
     motor_c: -3,

@@ -36,7 +36,7 @@ const ROOTS: [&NamedType; 5] = [
     FromDrive::SCHEMA,
 ];
 
-/// Whether files are to be rewritten.
+/// Returns whether files are to be rewritten.
 fn is_blessed() -> bool {
     std::env::var_os("CREPITUS_BLESS").is_some_and(|value| value != "0")
 }

@@ -1,5 +1,5 @@
 //! The lane that never changes. Its bytes stand here, in the test, and not in
-//! a file that can be written anew: programs of any two versions must be able
+//! a file that can be rewritten: programs of any two versions must be able
 //! to identify and to stop each other.
 
 use crate::examples::{Example, received};

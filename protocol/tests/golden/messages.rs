@@ -118,7 +118,7 @@ fn enqueue(ty: &'static NamedType, queue: &mut Vec<&'static NamedType>) {
     }
 }
 
-/// How a type is encoded, in the words of the page.
+/// Encoding of a type, in the words of the page.
 fn encoding(ty: &NamedType, fixed: bool) -> String {
     let number = |name: &str| {
         if fixed {

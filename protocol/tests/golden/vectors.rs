@@ -80,7 +80,7 @@ fn read(text: &str) -> File {
     file
 }
 
-/// How the wire differs from the file, a line each; and whether a message
+/// Differences of the wire from the file, a line each; and whether a message
 /// that the file knows is encoded otherwise.
 fn differences(file: &File, examples: &[Example]) -> (Vec<String>, bool) {
     let (mut found, mut is_other) = (Vec::new(), false);

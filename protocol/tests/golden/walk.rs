@@ -15,7 +15,7 @@ const FIXED: [&str; 5] = [
     "CoilCurrent",
 ];
 
-/// Whether this field, or this type, is of fixed width.
+/// Returns whether this field, or this type, is of fixed width.
 pub(crate) fn is_fixed(name: &str) -> bool {
     FIXED.contains(&name)
 }
@@ -100,7 +100,7 @@ fn collect(ty: &NamedType, path: &str, found: &mut BTreeSet<Choice>) {
     }
 }
 
-/// What an enumeration is known by: its name; a result's has none of its own.
+/// Identifier of an enumeration: its name; a result's has none of its own.
 fn place(ty: &NamedType, path: &str) -> String {
     let name = ty.name;
     if name.starts_with("Result") {

@@ -6,7 +6,7 @@ use crepitus_model::Real;
 use crepitus_protocol::telemetry::{BLOCK_TICKS, Sample};
 use crepitus_protocol::{DeviceSettings, LimitReason, TICK_S};
 
-/// How much faster than the speed limit is too fast: the drive's estimate lags.
+/// Overspeed threshold as a share of the speed limit: the drive's estimate lags.
 const FAST_SHARE: f64 = 1.15;
 
 /// Resistance of a winding over that which is assumed, with a margin for a speed that is a
@@ -17,21 +17,21 @@ const WARM: f64 = 2.0;
 /// from 10⁻⁶ to 10⁹ N·m/rad: ln 10¹⁵ is 34.6.
 const SOFTEST: f32 = 36.0;
 
-/// For rounding of a torque, N·m.
+/// Margin for rounding of a torque, N·m.
 const ROUNDING_NM: f32 = 1e-3;
 
 /// Bounds that follow from parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// What no model of these symptoms exceeds, N·m.
+    /// Upper bound of the torque of any model of these symptoms, N·m.
     pub(super) model_torque_nm: f32,
-    /// Of the motor, N·m.
+    /// Upper bound of the motor's torque, N·m.
     pub(super) torque_nm: f32,
     /// Most torque that friction compensation and bone shaping add to the model's, N·m.
     pub(super) added_nm: f32,
     /// Least by which the slew limit fades that torque in a block, N·m.
     pub(super) fade_nm: f32,
-    /// Of the joint alone, N·m.
+    /// Upper bound of the torque of the joint alone, N·m.
     pub(super) joint_nm: f32,
     /// Counts of the encoder in a block.
     pub(super) counts: f32,
@@ -54,7 +54,7 @@ fn single(value: f64) -> f32 {
 }
 
 impl Bounds {
-    /// Nothing is allowed.
+    /// Bounds that allow nothing.
     pub const NONE: Self = Self {
         model_torque_nm: 0.0,
         torque_nm: 0.0,
@@ -70,9 +70,9 @@ impl Bounds {
         range: (i32::MAX, i32::MIN),
     };
 
-    /// Of settings.
+    /// Returns the bounds that follow from settings.
     pub fn of(settings: &DeviceSettings) -> Self {
-        /// For rounding.
+        /// Margin for rounding, a factor.
         const MARGIN: f64 = 1.001;
         let joint = settings.crepitus.as_ref().map(|joint| &joint.parameters);
         let joint_nm = joint.map_or(0.0, |joint| joint.static_torque_nm);
@@ -125,7 +125,7 @@ impl Bounds {
         }
     }
 
-    /// Whether `added_nm` has faded to zero after this number of blocks. The drive does not
+    /// Returns whether `added_nm` has faded to zero after this number of blocks. The drive does not
     /// report a fade.
     pub fn has_faded(&self, blocks: u32) -> bool {
         #[expect(clippy::cast_precision_loss, reason = "some thousands")]
@@ -133,7 +133,7 @@ impl Bounds {
         blocks * self.fade_nm >= self.added_nm
     }
 
-    /// Whether this many blocks are enough for a change of parameters to settle: twice the time of
+    /// Returns whether this many blocks are enough for a change of parameters to settle: twice the time of
     /// the longest ramp at the slew limit that these bounds allow, as one ramp may begin where
     /// another ends. Does not depend on what the drive reports.
     pub fn has_settled(&self, blocks: u32) -> bool {
@@ -146,7 +146,7 @@ impl Bounds {
         blocks * self.fade_nm >= 2.0 * (SOFTEST * self.joint_nm + moved_nm)
     }
 
-    /// Whether a sample's torque is within the limit, and between zero and its model torque,
+    /// Returns whether a sample's torque is within the limit, and between zero and its model torque,
     /// give or take `added_nm`. Where the reported limit reason says that the joint's torque is
     /// withheld or held, by up to `joint_nm` more: a false reason gains no more than that.
     pub(super) fn allow(&self, sample: &Sample) -> bool {
@@ -166,7 +166,7 @@ impl Bounds {
             && (least_nm - beside_nm..=most_nm + beside_nm).contains(&torque_nm)
     }
 
-    /// Whether back-EMF at this speed, counts in a block, may leave too little voltage for the
+    /// Returns whether back-EMF at this speed, counts in a block, may leave too little voltage for the
     /// setpoint in a [warm](WARM) winding. At lower speeds no voltage limit is believed.
     pub(super) fn lacks_voltage(&self, counts: f32, setpoint_a: f32) -> bool {
         let needed_a = setpoint_a.abs() + CURRENT_SLACK_A;

@@ -293,7 +293,7 @@ fn what_most_samples_show_is_a_fault_and_what_few_show_is_none() {
 /// A stiff joint that rises and breaks in turn: the current lags by 0.4 A, and overtakes.
 #[test]
 fn a_current_that_lags_behind_a_torque_that_breaks_again_and_again_is_no_fault() {
-    /// Of what it lacks, in a tick: 1 − e^(−2π·f·h).
+    /// Share of its lag that the current makes up for in a tick: 1 − e^(−2π·f·h).
     const SHARE: f32 = 0.269_6;
     let bounds = bounds_with(&[
         ("crepitus.kinetic_torque_nm", 2.0),

@@ -11,7 +11,7 @@ struct Rig {
     resistance_ohm: f32,
     inductance_h: f32,
     current_a: f32,
-    /// What is at the coil now; `None`: open.
+    /// Voltage at the coil now, V; `None`: open.
     volts: Option<f32>,
     ticks: u32,
 }

@@ -21,7 +21,7 @@ const TICK_WITHOUT: u32 = 4;
 /// Largest current of a floating bridge, A: twice the largest offset.
 const FLOATING_A: f32 = 0.2;
 
-/// For how long it may be larger, ticks: the current dies away within one.
+/// Ticks for which the current of a floating bridge may be larger: it dies away within one.
 const FLOATING_TICKS: u32 = 20;
 
 impl Command {

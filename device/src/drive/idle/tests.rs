@@ -111,7 +111,7 @@ struct Bench<'a> {
     /// Events, each with its tick.
     events: VecDeque<(u32, Event)>,
     ticks: u32,
-    /// For how many ticks `idle` is interrupted at each lock.
+    /// Ticks for which `idle` is interrupted at each lock.
     interrupted: Vec<u32>,
     locks: usize,
 }
@@ -325,7 +325,7 @@ proptest! {
         failure_persistence: None, rng_seed: RngSeed::Fixed(1), cases: 400, ..ProptestConfig::default()
     })]
 
-    /// Whatever is said to be in force is, and the last commit comes to be, or is refused.
+    /// Checks that what is reported as in force is, and that the last commit takes effect or is refused.
     #[test]
     fn what_happens_between_the_locks_of_idle_loses_no_commit(
         events in prop::collection::vec((0..3_000_u32, event()), 0..12),
