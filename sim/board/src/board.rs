@@ -49,7 +49,7 @@ impl EnableLine {
         self.stuck.unwrap_or(self.driven)
     }
 
-    /// Whether the gate passes what the timer puts out.
+    /// Returns whether the gate passes what the timer puts out.
     fn passes(self) -> bool {
         self.is_on() || self.gate_is_stuck
     }
@@ -115,7 +115,7 @@ pub struct Board {
     comms_crash: Option<Head>,
     /// Last command to the bridge.
     bridge: Bridge,
-    /// And to that of the coil.
+    /// Last command to the coil.
     coil: CoilOutput,
     /// The coil's driver has opened it, until the drive lets it sleep.
     coil_tripped: bool,
@@ -130,7 +130,7 @@ pub struct Board {
     comparator_tripped: bool,
     /// The drive's converters work: that of the sensor, and of the monitor.
     converts: [bool; 2],
-    /// And that of the inputs that change slowly.
+    /// The drive's converter of the inputs that change slowly works.
     converts_slow: bool,
     /// Runs of `render_torque` in a tick: one, if its timer is right.
     renderings: u32,
@@ -506,7 +506,7 @@ impl Board {
         &mut self.up
     }
 
-    /// Whether the motor is driven: commanded, and enabled by both lines and
+    /// Returns whether the motor is driven: commanded, and enabled by both lines and
     /// the comparator.
     pub fn is_driven(&self) -> bool {
         matches!(self.bridge, Bridge::Driven(_))
@@ -515,13 +515,13 @@ impl Board {
             && self.comms_line.passes()
     }
 
-    /// Whether the coil of the vibration actuator is driven: commanded, and enabled by
+    /// Returns whether the coil of the vibration actuator is driven: commanded, and enabled by
     /// both lines, its driver and its supply.
     pub fn coil_is_driven(&self) -> bool {
         self.leg.coil_v().is_some()
     }
 
-    /// Whether the drive commands the coil to be driven, whatever the lines let through.
+    /// Returns whether the drive commands the coil to be driven, whatever the lines let through.
     pub fn coil_is_commanded(&self) -> bool {
         self.coil != CoilOutput::Asleep
     }
@@ -534,12 +534,12 @@ impl Board {
         }
     }
 
-    /// Whether comms runs.
+    /// Returns whether comms runs.
     pub fn comms_runs(&self) -> bool {
         self.comms_health == Health::Runs
     }
 
-    /// Whether comms has restarted since the last call: its USB device has been
+    /// Returns whether comms has restarted since the last call: its USB device has been
     /// replaced by a new one.
     pub fn take_comms_restart(&mut self) -> bool {
         std::mem::take(&mut self.comms_has_restarted)
@@ -551,7 +551,7 @@ fn single(value: f64) -> f32 {
     value as f32
 }
 
-/// How a program ended that was reset like this, if that is a crash.
+/// Kind of end of a program that was reset for this cause, if that is a crash.
 fn end(cause: ResetCause) -> Option<End> {
     match cause {
         ResetCause::Watchdog => Some(End::Watchdog),

@@ -55,13 +55,13 @@ const DISCHARGE_S: f64 = 0.1;
 pub struct Leg {
     plant: Plant<Bridge>,
     walk: Walk<Motion>,
-    /// What comes before the scene's motion, if anything does.
+    /// Lead-in before the scene's motion, if there is one.
     lead_in: Option<LeadIn>,
     /// Time of the motions before this one, s.
     before_s: f64,
     steps_per_half: u32,
     counter: Counter,
-    /// Of the loop, and of the monitor.
+    /// Current sensors of the loop, and of the monitor.
     current_sensors: [CurrentSensor; 2],
     slow_sensors: SlowSensors,
     /// Voltage of the supply's capacitors, V.
@@ -152,7 +152,7 @@ impl Leg {
         }
     }
 
-    /// From now on nobody holds the leg, whatever the scene's motion.
+    /// Releases the leg: from now on nobody holds it, whatever the scene's motion.
     pub fn release(&mut self) {
         self.plant.release();
     }
@@ -179,7 +179,7 @@ impl Leg {
         self.switch();
     }
 
-    /// What the sensor of the coil's current shows, A.
+    /// Reading of the coil's current sensor, A.
     pub fn coil_a(&self) -> f64 {
         let coil_a = self.plant.coil_current_a().unwrap_or(0.0);
         self.coil.shows_a(coil_a, self.is_supplied)
@@ -200,7 +200,7 @@ impl Leg {
         self.counter.preset(count);
     }
 
-    /// What one of the two shunts with its amplifier shows of the current, A.
+    /// Reading of the current by one of the two shunts with its amplifier, A.
     pub fn current_a(&self, path: CurrentPath) -> f64 {
         self.current_sensors[path as usize].shows(self.winding_current_a())
     }
@@ -225,7 +225,7 @@ impl Leg {
         self.slow_sensors.supply_v.unwrap_or(self.capacitors_v)
     }
 
-    /// What the joint's own sensor shows, as a share of its turn. Its zero is not the
+    /// Reading of the joint's own sensor, as a share of its turn. Its zero is not the
     /// joint's.
     pub fn joint_turns(&self) -> f64 {
         let angle_rad = self.plant.shaft().angle_rad - self.slow_sensors.slipped_rad;
@@ -288,7 +288,7 @@ impl Leg {
         &mut self.slow_sensors
     }
 
-    /// What is wrong with the coil.
+    /// Present faults of the coil.
     pub fn coil_faults(&self) -> &CoilFaults {
         &self.coil.faults
     }

@@ -29,7 +29,7 @@ pub struct NorFlash {
 }
 
 impl Default for NorFlash {
-    /// As from the factory.
+    /// Returns a flash as it comes from the factory.
     fn default() -> Self {
         Self {
             bytes: vec![0xff; LOG_BYTES],
@@ -49,7 +49,7 @@ impl NorFlash {
         self.power = Some(moments);
     }
 
-    /// Whether power has failed.
+    /// Returns whether power has failed.
     pub fn is_off(&self) -> bool {
         self.power == Some(0)
     }

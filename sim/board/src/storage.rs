@@ -29,7 +29,7 @@ impl Storage {
         self.log.newest()
     }
 
-    /// Whether writing works.
+    /// Returns whether writing works.
     pub(crate) fn set_works(&mut self, works: bool) {
         self.works = works;
     }

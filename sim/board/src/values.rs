@@ -16,7 +16,7 @@ use crepitus_scene::scene::Crepitus;
 /// The choice that switches an effect.
 pub const RENDER: &str = "render";
 
-/// Why a scene cannot be rendered by a device.
+/// Reason why a scene cannot be rendered by a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotRendered {
@@ -93,12 +93,12 @@ pub fn with_preset(now: &Values, preset: &Preset, keeps_others: bool) -> Values 
     }
 }
 
-/// Whether a group of parameters is an effect that a device renders.
+/// Returns whether a group of parameters is an effect that a device renders.
 pub fn is_effect(group: &str) -> bool {
     group == crepitus::EFFECT.name || SPECS.iter().any(|spec| spec.name == group)
 }
 
-/// Whether an effect is of the knee and not of the brace.
+/// Returns whether an effect is of the knee and not of the brace.
 pub fn is_of_knee(group: &str) -> bool {
     let spec = SPECS.iter().find(|spec| spec.name == group);
     spec.map_or(group == crepitus::EFFECT.name, |spec| {

@@ -31,7 +31,7 @@ const IDENTITY: UsbIdentity<'static> = UsbIdentity {
     serial_number: "SIM-COMMS-01",
 };
 
-/// Why there is no virtual device.
+/// Reason why there is no virtual device.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VirtualError {
@@ -121,7 +121,7 @@ impl VirtualDevice {
         self.usb.cable.unplug();
     }
 
-    /// Whether the host has it.
+    /// Returns whether the host has it.
     pub fn is_plugged_in(&self) -> bool {
         self.usb.host.is_some()
     }

@@ -31,7 +31,7 @@ pub struct Traffic {
 pub struct Wire {
     /// Its faults.
     pub injector: FaultInjector,
-    /// What the sender has come to say in its blocks: a defect of its program, or
+    /// Falsification of the sender's blocks: a defect of its program, or
     /// of its memory.
     pub falsify: Option<fn(&mut Block)>,
     /// The sender's program stands still, and its DMA sends the last two frames again and

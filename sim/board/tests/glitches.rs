@@ -1,5 +1,5 @@
-//! What is over in a moment is no fault; and what a hand does while it is
-//! armed is none either.
+//! Disturbances that are over in a moment, and motions of a hand while the device is
+//! being armed: neither is a fault.
 
 mod support;
 

@@ -7,8 +7,8 @@
 //! A run is a host that arms, commits, and disarms. Nothing in it is random, so a
 //! run is given by what fails: which frame, on which wire, is lost, comes late or
 //! comes again, or which controller restarts at which tick. A run without faults tells
-//! which frames there are. [`support::oracle`] watches every tick; what the host is
-//! told has to be true, and everything has to come back.
+//! which frames there are. [`support::oracle`] watches every tick; what is reported
+//! to the host has to be true, and everything has to come back.
 //!
 //! `CREPITUS_LONG=1` tries every pair of faults of the link.
 
@@ -24,7 +24,7 @@ use crepitus_protocol::{Revision, State, Values};
 use support::oracle::Oracle;
 use support::{Host, examination, set};
 
-/// What may become of a frame. The drive accepts what is 400 ticks old.
+/// Possible fates of a frame. The drive accepts what is 400 ticks old.
 const FATES: [Fate; 6] = [
     Fate::Lost,
     Fate::Late(45),
@@ -64,7 +64,7 @@ fn injector(board: &mut Board, way: Way) -> &mut crepitus_board::FaultInjector {
     }
 }
 
-/// What the host was told.
+/// Answers that the host received.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Told {
     arming: Option<Result<Answer, Refusal>>,
@@ -125,7 +125,7 @@ impl Run {
         self.host.device.board()
     }
 
-    /// Arms, commits, and disarms; what is told has to be true.
+    /// Arms, commits, and disarms; what is reported has to be true.
     fn play(&mut self) -> Told {
         let armings = self.host.drive_count(DriveCounter::Armings);
         let arming = self.host.try_ask(Operation::Arm, 1);
@@ -168,7 +168,7 @@ impl Run {
         }
     }
 
-    /// What is committed, and from which revision.
+    /// Values of the commit, and the revision from which they are committed.
     fn proposal(&self) -> (Revision, Values) {
         let comms = self.board().comms();
         let (base, mut values) = (comms.revision(), *comms.values());
@@ -258,7 +258,7 @@ fn failures_of(frames: [u64; 2]) -> Vec<Failure> {
     all
 }
 
-/// Plays runs, and counts those in which the host was not told that all was done.
+/// Plays runs, and counts those in which it was not reported to the host that all was done.
 fn play_all<'a>(runs: impl Iterator<Item = Vec<&'a Failure>>) -> (u32, u32) {
     let (mut played, mut not_done) = (0, 0);
     for failures in runs {
@@ -350,7 +350,7 @@ fn either_controller_may_restart_at_any_time() {
     assert!(played > 300 && armed_before > 50);
 }
 
-/// Whether there was torque when it happened.
+/// Returns whether there was torque when it happened.
 fn restart(controller: Controller, at: u64, start_up_ticks: u64, case: &str) -> bool {
     let mut run = Run::new();
     let host = &mut run.host;
@@ -427,7 +427,7 @@ fn either_controller_may_restart_in_a_commit_of_which_a_frame_fails() {
     assert!(played > 200 && committed > 10 && committed < played);
 }
 
-/// Whether the host was told that the commit is in force.
+/// Returns whether it was reported to the host that the commit is in force.
 fn restart_in_commit(
     mut run: Run,
     controller: Controller,

@@ -4,7 +4,7 @@
 //! In every tick [`support::oracle`] holds the device to what must be true. In
 //! each cell a host arms and commits whatever comes to its mind while the wires
 //! are bad, and once they are good again everything has to work as before,
-//! without starting anything anew.
+//! without restarting anything.
 
 mod support;
 
@@ -32,7 +32,7 @@ const CUT_WIRES: [[bool; 2]; 3] = [[true, true], [true, false], [false, true]];
 /// Ticks within which a host gets everything back: 3 s.
 const RECOVERY_TICKS: u64 = 60_000;
 
-/// What a cell, or some, came to.
+/// Results of a cell, or of some.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sum {
     cells: u32,
@@ -236,7 +236,7 @@ impl Cell {
         match answer {
             Some(Ok(Answer::Committed { revision })) => oracle.committed(revision, &values),
             Some(Err(Refusal::Values(error))) => panic!("{error:?} of {values:?}"),
-            // It may come into force yet.
+            // It may still take effect.
             None | Some(Err(Refusal::Unconfirmed)) => {}
             Some(_) => oracle.withdraw(),
         }
@@ -301,7 +301,7 @@ impl Cell {
         back
     }
 
-    /// Where every sample has gone.
+    /// Accounts for every sample.
     fn balance(&self) {
         let host = &self.host;
         let drive = |counter| u64::from(host.drive_count(counter));

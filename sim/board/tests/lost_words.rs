@@ -91,7 +91,7 @@ fn what_needs_no_torque_may_follow_a_disarm_at_once() {
 }
 
 /// The drive refuses a commit, comms does not hear of it and believes that it
-/// is in force. It has to come into force, or nothing can be committed again.
+/// is in force. It has to take effect, or nothing can be committed again.
 #[test]
 fn a_refusal_that_is_never_heard() {
     let mut stuck = 0;

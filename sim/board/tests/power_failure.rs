@@ -33,7 +33,7 @@ fn log_of(records: u32) -> ParameterLog<NorFlash> {
     log
 }
 
-/// What a log has after power came back: always the same, and it can be saved to.
+/// Newest record of a log after power came back: always the same, and the log can be saved to.
 fn kept(log: &ParameterLog<NorFlash>) -> u32 {
     fills_up(log);
     let mut log = restarted(log);

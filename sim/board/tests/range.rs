@@ -18,7 +18,7 @@ fn bending() -> Host {
     host
 }
 
-/// Of the drive, and of comms.
+/// Returns the faults of the drive, and of comms.
 fn board_faults(host: &Host) -> (Option<Fault>, Option<Fault>) {
     let board = host.device.board();
     (board.drive().fault(), board.comms().fault())
@@ -126,7 +126,7 @@ fn a_counter_that_jumps_while_disarmed_ends_the_zero() {
     assert!(!host.status().zeroed);
 }
 
-/// While it is being armed, whenever: there is never torque about a zero that is none.
+/// While it is being armed, whenever: there is never torque about an invalid zero.
 #[test]
 fn a_counter_that_jumps_while_arming_ends_it() {
     for ticks in (0..500).step_by(9) {

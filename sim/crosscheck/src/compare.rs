@@ -33,7 +33,7 @@ pub const UNITS: f64 = 32.0;
 /// Factor of their differences in the tolerance.
 pub const MARGIN: f64 = 2.0;
 
-/// Why rounding decides a case.
+/// Reason why rounding decides a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
     /// The torque at a match is at the static limit.
@@ -106,7 +106,7 @@ pub struct Comparison {
     /// The worst |Δt|/(t + 1/ωn) of events that agree within the plain
     /// tolerance.
     pub worst: f64,
-    /// What conditioning allows at the first event that does not agree, s.
+    /// Time difference that conditioning allows at the first event that does not agree, s.
     pub allowed_s: f64,
     /// Whether the sign law is broken.
     pub law_broken: bool,
@@ -211,7 +211,7 @@ fn scale_s(case: &Case) -> f64 {
     (1.0 / case.settings.parameters.natural_rad_s()).min(case.duration_s)
 }
 
-/// Whether an error is more than allowed, or no number.
+/// Returns whether an error is more than allowed, or no number.
 fn is_beyond(error: f64, bound: f64) -> bool {
     error.is_nan() || error > bound
 }
@@ -231,7 +231,7 @@ impl Pair<'_> {
         1e-12 * time_s + 1e-11 * scale_s(self.case) + MARGIN * self.spread(at).time_s
     }
 
-    /// Where the lists part, or how many events they share.
+    /// Index at which the lists part, or the number of events that they share.
     fn first_difference(&self, worst: &mut f64) -> (usize, Option<Difference>) {
         let (ours, theirs) = (&self.ours.events, self.theirs);
         let p = &self.case.settings.parameters;
@@ -318,7 +318,7 @@ impl Pair<'_> {
         alike
     }
 
-    /// Whether a written rule decides where rounding would not: a touch is no
+    /// Returns whether a written rule decides where rounding would not: a touch is no
     /// event, and a torque at the static limit sticks.
     fn rule_decides(&self, at: usize) -> bool {
         let p = &self.case.settings.parameters;
@@ -336,7 +336,7 @@ impl Pair<'_> {
         touch || tie
     }
 
-    /// Why rounding decides at an event.
+    /// Reason why rounding decides at an event.
     fn doubt(&self, at: usize) -> Doubt {
         let before = self.spreads.last().copied().unwrap_or_default();
         if before.time_s > 1e-8 * scale_s(self.case) {

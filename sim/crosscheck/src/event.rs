@@ -58,25 +58,25 @@ pub struct History {
     pub touches_s: Vec<f64>,
 }
 
-/// Why a problem has no certain solution here.
+/// Reason why a problem has no certain solution here.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Unsolved {
     /// The first zero could not be isolated.
     #[error("the first zero at {time_s} s cannot be isolated with 31 digits")]
     Unclear {
-        /// Where, s.
+        /// Time of the zero, s.
         time_s: f64,
     },
     /// Events pile up at one time.
     #[error("events pile up at {time_s} s")]
     PileUp {
-        /// Where, s.
+        /// Time of the events, s.
         time_s: f64,
     },
     /// A slip begins against its own sense.
     #[error("a slip at {time_s} s begins against its own sense")]
     Inconsistent {
-        /// Where, s.
+        /// Time of the slip, s.
         time_s: f64,
     },
     /// More steps than the limit.
@@ -84,7 +84,7 @@ pub enum Unsolved {
     TooLong {
         /// The limit.
         steps: u32,
-        /// Where, s.
+        /// Time reached, s.
         time_s: f64,
     },
 }

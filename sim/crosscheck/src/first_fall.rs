@@ -25,7 +25,7 @@ const DD_ROUNDING: f64 = 3.2e-27;
 /// The smallest interval that is looked at.
 const NARROWEST: f64 = 1e-15;
 
-/// What happens first to a series above zero.
+/// First fall of a series above zero, if there is one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fall {
     /// It stays above zero up to σ = 1.
@@ -41,17 +41,17 @@ pub enum Fall {
 /// A simple zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Root {
-    /// Where, σ.
+    /// Place of the zero, σ.
     pub at: Dd,
     /// The derivative by σ there.
     pub slope: f64,
-    /// How far the zero may be from `at`, in σ: the doubt of the value over
+    /// Largest distance of the zero from `at`, in σ: the doubt of the value over
     /// the slope.
     pub half_width: f64,
 }
 
 impl Series {
-    /// The size below which a value cannot be told from zero.
+    /// The size below which a value cannot be distinguished from zero.
     pub fn doubt(&self) -> f64 {
         self.error + DD_ROUNDING * self.size()
     }
@@ -124,7 +124,7 @@ pub fn first_fall(p: &Series) -> Fall {
     Fall::Never
 }
 
-/// What an interval shows.
+/// Finding in an interval.
 enum Look {
     Free,
     Found(Fall),
@@ -189,7 +189,7 @@ fn root_at(p: &Series, at: Dd, doubt: f64) -> Root {
     }
 }
 
-/// Where the slope is zero between `low`, where it is negative, and `high`.
+/// Place between `low`, where the slope is negative, and `high` at which the slope is zero.
 fn least(p: &Series, low: Dd, high: Dd) -> Dd {
     zero(&p.derivative(-Dd::ONE, 0.0), low, high)
 }

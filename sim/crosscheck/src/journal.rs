@@ -33,7 +33,7 @@ pub struct Counts {
     pub events: u64,
     /// Cases whose events all agree.
     pub agreed: u64,
-    /// Of these, cases whose tolerance followed the conditioning.
+    /// Agreed cases whose tolerance followed the conditioning.
     pub conditioned: u64,
     /// Cases decided by rounding from some event on.
     pub undecidable: u64,
@@ -96,7 +96,7 @@ impl Counts {
         self.notable.extend_from_slice(&other.notable);
     }
 
-    /// Whether anything is wrong.
+    /// Returns whether anything is wrong.
     pub fn is_clean(&self) -> bool {
         self.disagreed == 0 && self.law_broken == 0
     }
@@ -105,7 +105,7 @@ impl Counts {
 /// A row: what it counts, and the counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Which piece, from 0.
+    /// Index of the piece, from 0.
     pub piece: u64,
     /// Its convention.
     pub convention: Convention,
@@ -178,7 +178,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Nothing counted yet.
+    /// Rows with nothing counted yet.
     pub fn new(piece: u64) -> Self {
         let rows = Convention::ALL
             .into_iter()

@@ -31,7 +31,7 @@ impl Rounding {
         }
     }
 
-    /// Whether anything is changed.
+    /// Returns whether anything is changed.
     pub fn is_some(&self) -> bool {
         self.units > 0.0
     }

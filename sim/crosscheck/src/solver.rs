@@ -71,12 +71,12 @@ enum Phase {
     Slip { sense: f64, gap: Gap },
 }
 
-/// How the gap s·(Ω − θ̇) of a slip begins.
+/// Beginning of the gap s·(Ω − θ̇) of a slip.
 #[derive(Clone, Copy, Debug)]
 enum Gap {
-    /// Above zero.
+    /// Gap above zero.
     Open,
-    /// At zero, with this slope, rad/s².
+    /// Gap at zero, with this slope, rad/s².
     Opening(Dd),
 }
 
@@ -200,7 +200,7 @@ impl Joint {
         }
     }
 
-    /// Whether a torque is beyond the static limit by more than 31 digits can
+    /// Returns whether a torque is beyond the static limit by more than 31 digits can
     /// be wrong, given what else it may be wrong by.
     fn is_beyond(&self, torque_nm: Dd, doubt_nm: f64) -> bool {
         let slack = AT_LIMIT * self.static_nm.to_f64() + doubt_nm;
@@ -375,7 +375,7 @@ impl Solver<'_> {
     }
 }
 
-/// How well an event is separated.
+/// Separation of an event.
 #[derive(Clone, Copy, Debug, Default)]
 struct Certain {
     half_width_s: f64,

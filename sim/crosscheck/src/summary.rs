@@ -9,7 +9,7 @@ use std::fmt::Write;
 /// The sums of a journal.
 #[derive(Clone, Debug)]
 pub struct Summary {
-    /// By convention and motion.
+    /// Counts by convention and motion.
     cells: Vec<(Convention, MotionKind, Counts)>,
     /// Inconsistencies.
     pub faults: Vec<String>,

@@ -1,13 +1,13 @@
 //! The object's free motion in a slip, as Taylor series.
 //!
-//! With x = θ − s·Tk/kr the object obeys J·x″ + c·x′ + kr·x = 0, so the
+//! With x = θ − s·Tk/kr the object satisfies J·x″ + c·x′ + kr·x = 0, so the
 //! coefficients of x(t₀ + h·σ) follow one from another,
 //!
 //! ```text
 //! xₖ₊₂ = −[(c·h/J)·(k+1)·xₖ₊₁ + (kr·h²/J)·xₖ]/((k+1)(k+2))
 //! ```
 //! The remainder is bounded by the energy. Every derivative
-//! of x obeys the same equation, and R² = (x⁽ⁿ⁺¹⁾)² + ωn²·(x⁽ⁿ⁾)² never grows
+//! of x satisfies the same equation, and R² = (x⁽ⁿ⁺¹⁾)² + ωn²·(x⁽ⁿ⁾)² never grows
 //! under it, for no damping, critical damping or any other. So, by Lagrange's
 //! form of the remainder, with R of the first omitted derivative at the
 //! beginning of the step,

@@ -1,4 +1,4 @@
-//! What `reference` says of a case: its events, and the worst breach of the
+//! Answer of `reference` to a case: its events, and the worst breach of the
 //! sign law.
 //!
 //! ```text
@@ -20,7 +20,7 @@ use crepitus_scene::reference::Reference;
 
 /// Samples of the law between two events.
 const SAMPLES: u32 = 12;
-/// What a breach may be, in roundings.
+/// Largest allowed breach, in roundings.
 pub const LAW_ROUNDINGS: f64 = 256.0;
 
 /// All that is asked of `reference`.
@@ -30,7 +30,7 @@ pub struct Theirs {
     pub events: Vec<Event<f64>>,
     /// The worst breach of the sign law, in roundings; 0 where there is none.
     pub breach: f64,
-    /// Where it is, s.
+    /// Time of the worst breach, s.
     pub breach_s: f64,
 }
 
@@ -74,7 +74,7 @@ impl Theirs {
     }
 }
 
-/// By how many roundings the law is broken now.
+/// Returns the breach of the sign law now, in roundings.
 fn breach(case: &Case, reference: &Reference<'_>, time_s: f64) -> f64 {
     let Phase::Slip(sense) = reference.phase() else {
         return 0.0;

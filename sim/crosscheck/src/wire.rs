@@ -1,4 +1,4 @@
-//! How a child process reports what `reference` said: lines of hexadecimal
+//! Report of a child process on what `reference` said: lines of hexadecimal
 //! words, so that every bit arrives.
 //!
 //! ```text

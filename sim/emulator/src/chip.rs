@@ -65,7 +65,7 @@ pub(crate) struct Chip {
     pub(crate) rcc: Arc<Rcc>,
     pub(crate) flash: Arc<Flash>,
     pub(crate) ports: Vec<Arc<Gpio>>,
-    /// Of TIM1 and of TIM8.
+    /// Breaks of TIM1 and of TIM8.
     pub(crate) brakes: [Arc<Brake>; 2],
     pub(crate) adcs: Arc<Adcs>,
     pub(crate) analog: Arc<Analog>,

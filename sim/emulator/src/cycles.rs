@@ -79,7 +79,7 @@ impl Cycles {
         &self.costs
     }
 
-    /// How often an exception (the second) has interrupted another (the
+    /// Number of times that an exception (the second) has interrupted another (the
     /// first).
     pub fn preemptions(&self) -> &BTreeMap<(u16, u16), u64> {
         &self.preemptions

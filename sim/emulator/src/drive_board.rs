@@ -64,9 +64,9 @@ const COIL_SHARE_PER_A: f64 = 20.0 * 0.025 / 3.3;
     reason = "each is a part that works or not"
 )]
 pub struct Faults {
-    /// Nothing from comms arrives.
+    /// Cut of the link from comms: nothing arrives.
     pub down_is_cut: bool,
-    /// Nothing from the drive arrives.
+    /// Cut of the link from the drive: nothing arrives.
     pub up_is_cut: bool,
     /// The comparator behind the monitor's amplifier never trips.
     pub trip_is_blind: bool,
@@ -128,7 +128,7 @@ impl<C: CommsSide> DriveBoard<C> {
         }
     }
 
-    /// As [`Self::run`], passing every step of the core to `watch`.
+    /// Runs as [`Self::run`] does, passing every step of the core to `watch`.
     pub fn watch(&mut self, ticks: u64, watch: &mut dyn Watch) {
         for _ in 0..2 * ticks {
             self.half(Some(watch));
@@ -234,8 +234,8 @@ impl<C: CommsSide> DriveBoard<C> {
         }
     }
 
-    /// Once the bridge's timer runs, aligns the ends of halves with its bottom
-    /// and top.
+    /// Aligns the ends of halves with the bottom and top of the bridge's timer, once
+    /// it runs.
     fn synchronise(&mut self) {
         if self.is_synchronised {
             return;
@@ -293,26 +293,26 @@ impl<C: CommsSide> DriveBoard<C> {
         }
     }
 
-    /// Whether the drive's enable line is on.
+    /// Returns whether the drive's enable line is on.
     pub fn line_is_on(&self) -> bool {
         self.faults
             .line_is_stuck
             .unwrap_or_else(|| self.mcu.pin(LINE))
     }
 
-    /// Whether the enable line of comms is on.
+    /// Returns whether the enable line of comms is on.
     pub fn comms_line_is_on(&self) -> bool {
         self.comms.line_is_on()
     }
 
-    /// Whether the drive itself drives the motor: its bridge switches and its
+    /// Returns whether the drive itself drives the motor: its bridge switches and its
     /// line is on.
     pub fn drive_is_on(&self) -> bool {
         let terminals = half_bridges::terminals(&self.mcu, self.leg.supply_v());
         self.line_is_on() && terminals != Terminals::Open
     }
 
-    /// Whether the motor is driven: by the drive, and enabled by comms.
+    /// Returns whether the motor is driven: by the drive, and enabled by comms.
     pub fn is_driven(&self) -> bool {
         self.drive_is_on() && self.comms.line_is_on()
     }

@@ -14,7 +14,7 @@ use std::sync::OnceLock;
 
 const TARGET: &str = "thumbv7em-none-eabihf";
 
-/// Which image.
+/// Program of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Program {
     /// The drive's.
@@ -36,7 +36,7 @@ impl Program {
     }
 }
 
-/// Why there is no image.
+/// Reason why there is no image.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoImage {
@@ -59,7 +59,7 @@ pub fn image(program: Program) -> Result<Image, NoImage> {
     Ok(Image::read(&path(program)?)?)
 }
 
-/// Whether images come from `firmware/`, and may have to be built.
+/// Returns whether images come from `firmware/`, and may have to be built.
 pub fn is_to_be_built() -> bool {
     env::var_os("CREPITUS_IMAGES").is_none()
 }

@@ -35,19 +35,19 @@ const DATA_RESET: u32 = 1 << 12;
 /// Kind of a read of flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Of an instruction, on I-Code.
+    /// Read of an instruction, on I-Code.
     Instruction,
-    /// Of a vector as an exception is entered: on I-Code, as instructions are
+    /// Read of a vector as an exception is entered: on I-Code, as instructions are
     /// (ARM DDI 0337E 14.3).
     Vector,
-    /// Of data, on D-Code.
+    /// Read of data, on D-Code.
     Data,
 }
 
 /// A read of flash by the core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FlashRead {
-    /// When it was requested, in cycles of the core's clock.
+    /// Time of the request, in cycles of the core's clock.
     pub at: u64,
     /// Offset in flash.
     pub offset: u32,

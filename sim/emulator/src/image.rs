@@ -6,22 +6,22 @@ use object::{LittleEndian, Object as _, SymbolKind};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Where flash begins.
+/// Start address of flash.
 pub const FLASH: u32 = 0x0800_0000;
 
 /// Bytes of flash.
 pub const FLASH_BYTES: usize = 1 << 20;
 
-/// Why an image cannot be used.
+/// Reason why an image cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
     /// The file cannot be read.
     #[error("{path}: {source}")]
     Read {
-        /// Which file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Cause.
         source: std::io::Error,
     },
     /// Not a little-endian ELF file of 32 bits, or cut off.
@@ -41,7 +41,7 @@ pub enum ImageError {
 /// A symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Symbol {
-    /// Where it is; of a function, without the bit that says Thumb.
+    /// Address; of a function, without the bit that says Thumb.
     pub address: u32,
     /// Bytes.
     pub size: u32,
@@ -54,7 +54,7 @@ const OPTION_BYTES: u32 = 0x0fff_aae1;
 /// An image.
 #[derive(Clone, Debug)]
 pub struct Image {
-    /// What lies in flash, from its beginning.
+    /// Contents of flash, from its beginning.
     pub flash: Vec<u8>,
     /// The option bytes of the chip that it is programmed into.
     pub option_bytes: u32,
@@ -74,7 +74,7 @@ impl Image {
         Self::of_elf(&bytes)
     }
 
-    /// From bytes of flash, without any names.
+    /// Makes an image from bytes of flash, without any names.
     pub fn of_flash(flash: &[u8]) -> Self {
         Self {
             flash: flash.to_vec(),
@@ -83,7 +83,7 @@ impl Image {
         }
     }
 
-    /// From the bytes of an ELF file.
+    /// Makes an image from the bytes of an ELF file.
     ///
     /// # Errors
     /// [`ImageError`].

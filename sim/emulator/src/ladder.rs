@@ -33,7 +33,7 @@ const TIMEOUT: Time = Time::from_us(60_000_000);
 /// Interval between two polls of the command.
 const POLL_INTERVAL: Time = Time::from_us(200);
 
-/// Why there is no result.
+/// Reason why there is no result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LadderError {
@@ -116,7 +116,7 @@ impl Ladder {
         }
     }
 
-    /// As [`Self::run`], and compares every output with the host's.
+    /// Runs as [`Self::run`] does, and compares every output with the host's.
     ///
     /// # Errors
     /// [`LadderError`]; [`LadderError::Differs`] at the first other bit.

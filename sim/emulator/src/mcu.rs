@@ -41,7 +41,7 @@ impl fmt::Display for Pin {
     }
 }
 
-/// Why a chip is reset.
+/// Cause of a reset of a chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reset {
     /// Power-on: memory is undefined.
@@ -69,9 +69,9 @@ pub trait Watch {
 /// An access of the core to observed RAM.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RamAccess {
-    /// Of the instruction.
+    /// Address of the instruction.
     pub pc: u32,
-    /// Of the first byte.
+    /// Address of the first byte.
     pub address: u32,
     /// Written, not read.
     pub is_write: bool,
@@ -80,14 +80,14 @@ pub struct RamAccess {
     /// Execution priority, with BASEPRI and PRIMASK: the lower, the more urgent;
     /// 256 without any exception.
     pub priority: i32,
-    /// When the instruction began.
+    /// Time at which the instruction began.
     pub at: Time,
 }
 
 /// A step of the core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// Where the core was before it.
+    /// Program counter of the core before it.
     pub pc: u32,
     /// The exception being handled after it; 0 if none.
     pub exception: u16,
@@ -98,16 +98,16 @@ pub struct Step {
     /// Cycles of them in which the core waited for flash or a register; 0 unless
     /// they are modelled.
     pub waits: u32,
-    /// When it began.
+    /// Time at which it began.
     pub at: Time,
 }
 
 /// An access of the program, or of the DMA, to a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Access {
-    /// When the instruction began.
+    /// Time at which the instruction began.
     pub at: Time,
-    /// Of the register.
+    /// Address of the register.
     pub address: u32,
     /// The value read or written.
     pub value: u32,
@@ -137,7 +137,7 @@ pub trait Mcu {
     /// Runs until `until`, and at most one instruction beyond.
     fn run_until(&mut self, until: Time);
 
-    /// As [`Self::run_until`], passing every step to `watch`. Slower.
+    /// Runs as [`Self::run_until`] does, passing every step to `watch`. Slower.
     fn watch_until(&mut self, until: Time, watch: &mut dyn Watch);
 
     /// Current time.
@@ -195,7 +195,7 @@ pub trait Mcu {
     /// interrupts masked. A reset ends it.
     fn set_hung(&mut self, is_hung: bool);
 
-    /// Whether the core is in lock-up.
+    /// Returns whether the core is in lock-up.
     fn is_locked_up(&self) -> bool;
 
     /// A hash of memory, core and registers, for comparing two runs.

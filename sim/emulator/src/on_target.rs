@@ -14,7 +14,7 @@ pub type OnTarget = Box<dyn FnMut(&Plan, &[Input]) -> Result<Vec<Call>, String>>
 #[cfg(feature = "core")]
 const PREPARED_TICKS: u64 = 600;
 
-/// Why there is no target.
+/// Reason why there is no target.
 #[derive(Debug, thiserror::Error)]
 pub enum NoTarget {
     /// The program was built without the core.

@@ -35,7 +35,7 @@ const PLUG_IN_TICKS: u64 = 30_000;
 /// Offset of the parameters in the flash of comms: sectors 2 and 3.
 pub const PARAMETERS: usize = 0x8000;
 
-/// Why the device cannot be reached.
+/// Reason why the device cannot be reached.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlugInError {
@@ -71,7 +71,7 @@ impl Pair {
         }
     }
 
-    /// As [`Self::new`], with the scene's parameters stored.
+    /// [`Self::new`] with the scene's parameters stored.
     ///
     /// # Errors
     /// [`NotRendered`] if no device can render the scene.
@@ -111,7 +111,7 @@ impl Pair {
         self.boards.comms_mut().mcu_mut().unplug();
     }
 
-    /// Whether the host has it.
+    /// Returns whether the host has it.
     pub fn is_plugged_in(&self) -> bool {
         self.host.is_some()
     }

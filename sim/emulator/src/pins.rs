@@ -25,9 +25,9 @@ pub enum Mode {
 pub enum Pull {
     /// None.
     None,
-    /// To the supply.
+    /// Resistor to the supply.
     Up,
-    /// To ground.
+    /// Resistor to ground.
     Down,
 }
 

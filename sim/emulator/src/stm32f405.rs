@@ -36,7 +36,7 @@ use rsemu::cpu::arm::v7m::{ArmV7m, Config};
 use std::ops::Range;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// From here on registers are the core's own.
+/// First address of the core's own registers.
 const CORE: u32 = 0xe000_0000;
 
 /// SysTick is enabled.
@@ -80,7 +80,7 @@ pub struct Stm32f405 {
     is_hung: bool,
     /// The core has been reset, and not stepped since.
     is_reset: bool,
-    /// At the pins of the encoder's channels.
+    /// Levels at the pins of the encoder's channels.
     encoder: [bool; 2],
     resets: Vec<(Time, Reset)>,
 }
@@ -232,7 +232,7 @@ impl Stm32f405 {
         self.core.pc()
     }
 
-    /// Of all executed cycles, those without the library's help.
+    /// Number of those executed cycles that did without the library's help.
     pub fn fast_cycles(&self) -> u64 {
         self.fast_cycles
     }
@@ -436,7 +436,7 @@ impl Stm32f405 {
         }
     }
 
-    /// What the next step begins with.
+    /// State with which the next step begins.
     fn before(&self) -> RamAccess {
         RamAccess {
             pc: self.core.pc(),

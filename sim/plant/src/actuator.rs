@@ -1,4 +1,4 @@
-//! What drives the shaft: what makes a torque out of the device's command, or
+//! Drive of the shaft: an actuator that makes a torque out of the device's command, or
 //! the [bridge](crate::effects::motor::bridge), which knows voltages only.
 
 use crate::chain::{Push, Step, Verdict};

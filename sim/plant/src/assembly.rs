@@ -13,7 +13,7 @@ use crepitus_model::SettingsError;
 /// An effect as a scene lists it.
 #[derive(Clone, Debug)]
 pub struct Listed {
-    /// Which one.
+    /// The effect.
     pub effect: &'static Effect,
     /// Its numbers and choices.
     pub given: Given,

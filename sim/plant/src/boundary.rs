@@ -1,4 +1,4 @@
-//! What holds the right end of the chain: the scene's motion, a hand that
+//! Boundary that holds the right end of the chain: the scene's motion, a hand that
 //! follows it, or nobody.
 
 use crate::chain::{Body, Chain, Flow, Push, Settled};
@@ -10,9 +10,9 @@ use crate::energy_balance::{Account, EnergyBalance};
 pub struct MotionStep {
     /// Length, s.
     pub length_s: f64,
-    /// At the start.
+    /// Angle and velocity at the start.
     pub from: Body,
-    /// At the end.
+    /// Angle and velocity at the end.
     pub to: Body,
 }
 
@@ -30,9 +30,9 @@ impl MotionStep {
 /// The stretch of a step that is being solved, as fractions of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch {
-    /// Where it begins.
+    /// Start, as a fraction of the step.
     pub from: f64,
-    /// Where it ends.
+    /// End, as a fraction of the step.
     pub to: f64,
     /// Its length, s.
     pub length_s: f64,
@@ -185,7 +185,7 @@ impl Boundary for Prescribed {
     fn write(&self, _: &mut Vec<f64>) {}
 }
 
-/// Nobody: the right end swings freely.
+/// Boundary without a holder: the right end swings freely.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Released;
 

@@ -1,4 +1,4 @@
-//! What hangs on the chain beside its way to the hand.
+//! Branches that hang on the chain beside its way to the hand.
 
 use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight};
 use crate::energy_balance::EnergyBalance;

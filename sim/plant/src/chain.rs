@@ -58,9 +58,9 @@ impl Body {
 /// that it acts on: `torque_nm − slope_nms·w`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Push {
-    /// At w = 0, N·m, in the direction of growing angle.
+    /// Torque at w = 0, N·m, in the direction of growing angle.
     pub torque_nm: f64,
-    /// How fast it falls with w, N·m·s/rad.
+    /// Rate at which it falls with w, N·m·s/rad.
     pub slope_nms: f64,
     /// The body is held by dry friction of up to this torque, N·m; the other
     /// numbers leave that friction out.
@@ -85,7 +85,7 @@ impl Push {
     }
 }
 
-/// What all parts know of a step.
+/// Data of a step that all parts know.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Step {
     /// Length, s.
@@ -156,7 +156,7 @@ pub struct Settled {
 /// that would not depend on the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Impacts {
-    /// How many.
+    /// Number of impacts.
     pub count: u64,
     /// The largest impulse between the two that met, N·m·s.
     pub largest_nms: f64,
@@ -208,17 +208,17 @@ pub trait Chain: Send {
     /// The motor's shaft.
     fn shaft(&self, body: &Body) -> Body;
 
-    /// Whether shaft and right end are one body, always.
+    /// Returns whether shaft and right end are one body, always.
     fn is_rigid(&self) -> bool;
 
     /// Inertia that moves rigidly with the right end now, kg·m².
     fn inertia_kg_m2(&self) -> f64;
 
-    /// Told once, before the first step: the inertia right of this part that
+    /// Receives once, before the first step, the inertia right of this part that
     /// moves rigidly with it; infinite where the motion is prescribed.
     fn attach(&mut self, right_kg_m2: f64);
 
-    /// Told before the velocity of the right end changes at once: what cannot
+    /// Receives a sudden change of the right end's velocity before it happens: what cannot
     /// be pulled stays behind.
     fn jerk(&mut self, body: &Body, change_rad_s: f64);
 

@@ -8,7 +8,7 @@
 use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight};
 use crate::energy_balance::{Account, EnergyBalance};
 
-/// What it is, in words.
+/// Description of a compliance, in words.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     /// The effect that it belongs to.
@@ -17,7 +17,7 @@ pub struct Kind {
     pub body: &'static str,
     /// Column of its torque.
     pub column: &'static str,
-    /// What to do where the step is long against it.
+    /// Advice for the case that the step is long against it.
     pub advice: &'static str,
 }
 
@@ -33,7 +33,7 @@ pub struct Compliance {
     inertia_kg_m2: f64,
     /// The body at the left end.
     inner: Body,
-    /// What acts on that but for the spring, as last folded.
+    /// Action on that body but for the spring, as last folded.
     push: Push,
     /// Torque on the right end in the last step.
     torque_nm: f64,
@@ -45,16 +45,16 @@ pub struct Compliance {
     longest_s: f64,
 }
 
-/// Above this ωh the swing of one end against the other runs away from the true one: the
+/// Largest ωh. Above it the swing of one end against the other runs away from the true one: the
 /// midpoint rule's frequency is off by (ωh)²/12, and at a damping ratio of a
 /// hundredth that adds up to a tenth of a radian before the swing has decayed.
 const MOST_RADIANS: f64 = 0.1;
 
-/// Above this bh/J the damper's decay changes its sign at every step.
+/// Largest bh/J. Above it the damper's decay changes its sign at every step.
 const MOST_DECAY: f64 = 2.0;
 
 impl Compliance {
-    /// Between the right end of `left`, which gets this inertia, and a body that begins
+    /// Returns a compliance between the right end of `left`, which gets this inertia, and a body that begins
     /// where that does.
     pub fn new(
         left: Box<dyn Chain>,
@@ -80,7 +80,7 @@ impl Compliance {
         }
     }
 
-    /// With a spring that carries this torque at the start, and is linear about it.
+    /// Returns the compliance with a spring that carries this torque at the start, and is linear about it.
     #[must_use]
     pub fn carrying(self, preload_nm: f64) -> Self {
         Self { preload_nm, ..self }

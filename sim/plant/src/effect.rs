@@ -1,4 +1,4 @@
-//! What an effect is: a name, its numbers, and how it joins a plant.
+//! Description of an effect: a name, its numbers, and how it joins a plant.
 
 use crate::actuator::Commanded;
 use crate::boundary::Boundary;
@@ -24,7 +24,7 @@ pub struct Effect {
     pub choices: &'static [Choice],
     /// Effects without which it has no meaning.
     pub needs: &'static [Need],
-    /// Where it joins.
+    /// Place at which it joins.
     pub part: Part,
 }
 
@@ -48,7 +48,7 @@ impl Effect {
 pub struct Given {
     /// A number for each of its parameters.
     pub numbers: Vec<f64>,
-    /// For each of its choices the place of the chosen name.
+    /// Place of the chosen name for each of its choices.
     pub choices: Vec<u8>,
 }
 
@@ -69,7 +69,7 @@ pub struct Context {
     pub tick_s: f64,
     /// The device computes in f32.
     pub single: bool,
-    /// How the motion begins.
+    /// Angle and velocity at which the motion begins.
     pub start: Body,
     /// Angle to add to φ so that weight on the leg is a cosine, rad: of the posture of
     /// a `limb`. Without one nothing has weight.
@@ -80,7 +80,7 @@ pub struct Context {
 pub type MakeActuator = fn(&Given, &Context) -> Result<Box<dyn Commanded>, SettingsError>;
 /// Lengthens the chain.
 pub type MakeLink = fn(&Given, &Context, Box<dyn Chain>) -> Box<dyn Chain>;
-/// What carries an actuator.
+/// Carrier of an actuator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mounted {
     /// The shell; without one the right end of the chain.
@@ -96,7 +96,7 @@ pub type MakeShell = fn(&Given, &Context, Box<dyn Chain>, OnChain<'_>) -> Box<dy
 /// Makes what holds the chain's right end.
 pub type MakeBoundary = fn(&Given, &Context, &dyn Chain) -> Box<dyn Boundary>;
 
-/// Where an effect joins.
+/// Place at which an effect joins.
 #[derive(Clone, Copy, Debug)]
 pub enum Part {
     /// The stick-slip object, which the scene's solver renders.
@@ -106,15 +106,15 @@ pub enum Part {
     /// A stage of the device after the joint, which its
     /// [pipeline](crepitus_model::render) renders.
     Stage(&'static EffectSpec),
-    /// What turns the command into torque.
+    /// The actuator, which turns the command into torque.
     Actuator(MakeActuator),
     /// A part of the chain, right of those before it in the table.
     Link(MakeLink),
     /// The shell, right of all links.
     Shell(MakeShell),
-    /// What sits on a part of the chain.
+    /// An actuator that sits on a part of the chain.
     Mount(fn(&Given) -> Mounted, MakeLink),
-    /// What holds the right end.
+    /// The boundary, which holds the right end.
     Boundary(MakeBoundary),
 }
 

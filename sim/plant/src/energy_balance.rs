@@ -1,4 +1,4 @@
-//! Where the energy of a plant is: what each part was given, stores, and has
+//! Energy balance of a plant: what each part was given, stores, and has
 //! lost.
 
 /// Kind of a term.
@@ -33,7 +33,7 @@ pub struct Term {
     pub effect: &'static str,
     /// Description.
     pub what: &'static str,
-    /// Where it counts.
+    /// Account in which it counts.
     pub account: Account,
     /// Energy, J.
     pub joule: f64,

@@ -191,7 +191,7 @@ impl Motion {
         }
     }
 
-    /// As [`Self::piece`], for one who goes on from piece to piece: `place` is
+    /// [`Self::piece`] for a caller that goes on from piece to piece: `place` is
     /// where the last one was found, 0 to begin with, and is kept.
     pub fn piece_from(&self, time_s: f64, place: &mut usize) -> Piece {
         if let Self::Sequence(pieces) = self

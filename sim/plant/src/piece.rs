@@ -33,9 +33,9 @@ pub struct Bounds {
 /// An analytic stretch of a motion, from `start_s` to `end_s`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// When it begins, s.
+    /// Start of the piece, s.
     pub start_s: f64,
-    /// When it ends, s; infinite for the last piece of a motion.
+    /// End of the piece, s; infinite for the last piece of a motion.
     pub end_s: f64,
     /// Whether the velocity jumps where it begins. Without a jump the piece
     /// before ends with the same velocity, though perhaps not the same bits.
@@ -63,7 +63,7 @@ pub enum Curve {
 }
 
 impl Piece {
-    /// Whether the velocity is linear in time, so that the angle is a parabola.
+    /// Returns whether the velocity is linear in time, so that the angle is a parabola.
     #[inline]
     pub fn is_parabolic(&self) -> bool {
         matches!(self.curve, Curve::Polynomial([_, _, _, c3, c4, c5]) if (c3, c4, c5) == (0.0, 0.0, 0.0))
@@ -82,7 +82,7 @@ impl Piece {
         }
     }
 
-    /// Whether the velocity is constant.
+    /// Returns whether the velocity is constant.
     pub fn is_steady(&self) -> bool {
         self.is_parabolic() && matches!(self.curve, Curve::Polynomial([_, _, c2, ..]) if c2 == 0.0)
     }

@@ -9,11 +9,11 @@ use crate::energy_balance::EnergyBalance;
 /// carried to the step's end in the mode then active.
 const ENDS_PER_STEP: u32 = 8;
 
-/// How often a step is folded again because a mode did not hold. A chain has
+/// Maximum number of folds of a step until its modes hold. A chain has
 /// at most a friction and a contact, with three modes each.
 const CHANGES_PER_FOLD: u32 = 6;
 
-/// How often an end is looked for on a stretch that is cut about there.
+/// Maximum number of searches for an end on a stretch that is cut about there.
 const LOOKS_PER_END: u32 = 8;
 
 /// The shortest part of a step that an end of a mode can cut off.
@@ -89,8 +89,8 @@ impl<A: Actuator> Plant<A> {
         &mut self.actuator
     }
 
-    /// From now on nobody holds the right end. What the hand was given and stored is no longer
-    /// in the balance.
+    /// Releases the right end: from now on nobody holds it. What the hand was given and stored
+    /// is no longer in the balance.
     pub fn release(&mut self) {
         self.boundary = Box::new(Released);
         self.chain.attach(0.0);
@@ -102,7 +102,7 @@ impl<A: Actuator> Plant<A> {
         self.coil = coil;
     }
 
-    /// Between two steps the motion's velocity jumps.
+    /// Lets the motion's velocity jump to `omega_rad_s` between two steps.
     pub fn jump(&mut self, omega_rad_s: f64) {
         self.boundary
             .jump(omega_rad_s, &mut self.body, self.chain.as_mut());

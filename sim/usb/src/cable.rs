@@ -37,7 +37,7 @@ impl SoftCable {
         }
     }
 
-    /// Whether the peripheral's interrupt line is active: the device has something to poll for.
+    /// Returns whether the peripheral's interrupt line is active: the device has something to poll for.
     pub fn interrupt_pending(&self) -> bool {
         let peripheral = lock(&self.peripheral);
         peripheral.reset == ResetStage::Pending

@@ -55,7 +55,7 @@ impl EndpointDescriptor {
         self.attributes & 0b11 == 2 && (1..=64).contains(&self.max_packet)
     }
 
-    /// Whether its packets come periodically: `bInterval` is how often.
+    /// Returns whether its packets come periodically: `bInterval` is how often.
     pub(crate) fn is_interrupt(self) -> bool {
         self.attributes & 0b11 == 3
     }
@@ -157,7 +157,7 @@ impl ConfigurationDescriptor {
     }
 }
 
-/// Where in a device the serial port is.
+/// Place of the serial port in a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SerialFunction {
     /// The interface that takes line coding and control lines.

@@ -39,7 +39,7 @@ impl ControlRequest {
     }
 }
 
-/// Why a transfer did not complete.
+/// Reason why a transfer did not complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TransferError {

@@ -24,7 +24,7 @@ pub enum DescriptorError {
     /// The bytes end inside a descriptor, or its length byte is less than 2.
     #[error("the descriptor at byte {at} is cut short")]
     Truncated {
-        /// Where that descriptor starts.
+        /// Offset of that descriptor, bytes.
         at: usize,
     },
     /// Another descriptor than the one expected here.
@@ -48,7 +48,7 @@ pub enum DescriptorError {
     /// An endpoint before the first interface.
     #[error("the endpoint at byte {at} belongs to no interface")]
     Orphan {
-        /// Where it starts.
+        /// Offset of the endpoint's descriptor, bytes.
         at: usize,
     },
     /// A control endpoint has packets of 8, 16, 32 or 64 bytes.

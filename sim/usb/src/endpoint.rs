@@ -6,7 +6,7 @@
 use crate::wire::{Handshake, Packet};
 use usb_device::{Result, UsbError};
 
-/// How many endpoint numbers a device has in each direction.
+/// Count of a device's endpoint numbers in each direction.
 pub(crate) const ENDPOINTS: usize = 16;
 
 /// An endpoint that sends to the host.

@@ -79,7 +79,7 @@ impl fmt::Display for Step {
     }
 }
 
-/// Why a device could not be enumerated.
+/// Reason why a device could not be enumerated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnumerationError {
@@ -88,7 +88,7 @@ pub enum EnumerationError {
     Transfer {
         /// The request.
         step: Step,
-        /// Why.
+        /// Cause of the failure.
         #[source]
         cause: TransferError,
     },
@@ -175,7 +175,7 @@ pub struct CdcDevice {
     pub device: DeviceDescriptor,
     /// The configuration in force.
     pub configuration: ConfigurationDescriptor,
-    /// Where the serial port is.
+    /// Place of the serial port.
     pub function: SerialFunction,
     /// Manufacturer.
     pub manufacturer: Option<String>,
@@ -307,7 +307,7 @@ impl<W: UsbWire, R: FnMut(&mut W)> Enumerator<'_, W, R> {
         self.send(Step::SetConfiguration, request, &[])
     }
 
-    /// What opening the port does: line coding, then DTR and RTS.
+    /// Sets up the line as opening the port does: line coding, then DTR and RTS.
     fn set_up_line(&mut self, interface: u8) -> Result<(), EnumerationError> {
         let line_coding = ControlRequest {
             request_type: request_type::CLASS_TO_INTERFACE,

@@ -2,10 +2,10 @@
 
 /// A frame of a full-speed bus, bytes: 12 Mbit/s for 1 ms.
 const FRAME_BYTES: usize = 1_500;
-/// What a bulk transaction takes besides its data, bytes (USB 2.0, table 5-9).
+/// Overhead of a bulk transaction besides its data, bytes (USB 2.0, table 5-9).
 const TRANSACTION_OVERHEAD: usize = 13;
 
-/// What is left of a frame, in bytes. A NAK takes no time: a real host repeats it only in unused
+/// Rest of a frame, in bytes. A NAK takes no time: a real host repeats it only in unused
 /// time.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct FrameTime {
@@ -18,7 +18,7 @@ impl FrameTime {
         self.bytes_left = FRAME_BYTES;
     }
 
-    /// Whether a transaction with this much data still fits, bytes.
+    /// Returns whether a transaction with this much data still fits, bytes.
     pub(crate) fn has_room_for(self, data: usize) -> bool {
         data + TRANSACTION_OVERHEAD <= self.bytes_left
     }

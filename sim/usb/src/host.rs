@@ -112,12 +112,12 @@ impl CdcHost {
         count
     }
 
-    /// How many bytes [`queue`](Self::queue) would take.
+    /// Number of bytes that [`queue`](Self::queue) would take.
     pub fn room(&self) -> usize {
         OUTGOING_BYTES - self.outgoing.len()
     }
 
-    /// How many queued bytes the device has not taken yet.
+    /// Number of queued bytes that the device has not taken yet.
     pub fn unsent(&self) -> usize {
         self.outgoing.len()
     }
@@ -174,7 +174,7 @@ impl CdcHost {
         self.in_first = !self.in_first;
     }
 
-    /// At most one transaction in each direction, as far as the frame's time goes. Let the device
+    /// Performs at most one transaction in each direction, as far as the frame's time goes. Let the device
     /// run between two calls, it can hold only one packet each way.
     ///
     /// # Errors

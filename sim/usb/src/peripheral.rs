@@ -13,7 +13,7 @@ pub(crate) struct Peripheral {
     pub(crate) plugged: bool,
     pub(crate) suspended: bool,
     pub(crate) reset: ResetStage,
-    /// Not yet reported to the device stack.
+    /// Event not yet reported to the device stack.
     pub(crate) line_event: Option<LineEvent>,
     pub(crate) address: u8,
     /// A SETUP packet the device stack has not read yet.

@@ -79,7 +79,7 @@ impl Pty {
         self.link.as_deref().unwrap_or(&self.path)
     }
 
-    /// Whether a program has the port open.
+    /// Returns whether a program has the port open.
     pub fn is_open(&self) -> io::Result<bool> {
         let mut fds = [PollFd::new(&self.master, PollFlags::empty())];
         let at_once = Timespec {

@@ -21,7 +21,7 @@
 //!
 //! **Not supported**: isochronous transfers, other speeds than full speed, more than one device,
 //! resets of the port by the importer (Linux does not send them), and any authentication: the
-//! protocol has none. Whoever can reach the port can use the device.
+//! protocol has none. Any program that can reach the port can use the device.
 
 mod connection;
 mod exported;

@@ -69,7 +69,7 @@ pub struct Token {
     pub endpoint: u8,
 }
 
-/// How a device answers a transaction.
+/// Answer of a device to a transaction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Handshake {
@@ -104,7 +104,7 @@ pub trait UsbWire {
     /// On a wire that does not model frames this does nothing.
     fn suspend(&mut self) {}
 
-    /// Whether a hub reports a device on this port: the cable is plugged in and the device has
+    /// Returns whether a hub reports a device on this port: the cable is plugged in and the device has
     /// its pull-up on.
     ///
     /// On a wire that does not model the pull-up a device is always there; one that is gone

@@ -51,7 +51,7 @@ struct Turned {
 }
 
 impl Turned {
-    /// What the request asks for.
+    /// Bytes that the request asks for.
     fn answer(&self) -> &'static [u8] {
         let [_, request, index, kind, ..] = self.request;
         match (request, kind, index) {

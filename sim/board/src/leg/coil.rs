@@ -9,10 +9,10 @@ use crepitus_scene::Scene;
 /// Range of the sensor, A: its amplifier's output ends at ground and at 3.3 V.
 pub const COIL_RANGE_A: f64 = 3.3;
 
-/// What can be wrong with the coil.
+/// Possible faults of the coil.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CoilFaults {
-    /// What shunt and amplifier show.
+    /// Reading of shunt and amplifier.
     pub sensor: CurrentSensor,
     /// The driver pulls its nFAULT low, or its wire is broken.
     pub driver_fails: bool,
@@ -51,7 +51,7 @@ impl CoilDriver {
         Some(duty.clamp(-1.0, 1.0) * self.supply_v)
     }
 
-    /// What it does to the coil.
+    /// Effect of the driver on the coil.
     pub(super) fn terminals(&self, is_supplied: bool) -> Coil {
         match self.volts(is_supplied) {
             Some(volts) if !self.faults.is_open => Coil::Driven(volts),
@@ -59,7 +59,7 @@ impl CoilDriver {
         }
     }
 
-    /// What the sensor shows, A, for the coil's current.
+    /// Reading of the sensor, A, for the coil's current.
     pub(super) fn shows_a(&self, coil_a: f64, is_supplied: bool) -> f64 {
         let beside_a = (self.faults.short_ohm.zip(self.volts(is_supplied)))
             .map_or(0.0, |(ohm, volts)| volts / ohm);

@@ -1,4 +1,4 @@
-//! From a straight leg to where a scene's motion begins.
+//! Lead-in from a straight leg to the start of a scene's motion.
 //!
 //! ```text
 //!    φ                                ╱ the scene's motion
@@ -35,7 +35,7 @@ pub(super) struct LeadIn {
     stage: Stage,
 }
 
-/// What the leg does.
+/// Stage of the lead-in.
 #[derive(Clone, Copy)]
 enum Stage {
     /// It rests; the motor has been driven for so many ticks without a break.

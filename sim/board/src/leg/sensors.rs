@@ -11,7 +11,7 @@ pub enum EncoderWiring {
     Right,
     /// Channels A and B are swapped: it counts the other way.
     Swapped,
-    /// Not at all: the counter stays where it is, and edges are lost.
+    /// No connection: the counter stays where it is, and edges are lost.
     Unplugged,
 }
 
@@ -25,7 +25,7 @@ pub enum CurrentPath {
     Monitor,
 }
 
-/// What a shunt with its amplifier shows.
+/// Reading of a shunt with its amplifier.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum CurrentSensor {
     /// The true current.
@@ -53,13 +53,13 @@ impl CurrentSensor {
 /// Sensors of what changes slowly, and their faults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlowSensors {
-    /// What the supply's sensor shows in place of its voltage, V.
+    /// Reading of the supply's sensor in place of its voltage, V.
     pub supply_v: Option<f64>,
     /// Temperature of the motor, °C.
     pub motor_c: f64,
-    /// By how much the coupling between gear and brace has slipped, rad.
+    /// Slip of the coupling between gear and brace, rad.
     pub slipped_rad: f64,
-    /// What the joint's sensor shows in place of its angle, turns.
+    /// Reading of the joint's sensor in place of its angle, turns.
     pub joint_turns: Option<f64>,
 }
 

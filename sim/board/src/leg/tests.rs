@@ -263,7 +263,7 @@ fn without_a_supply_the_terminals_are_open() {
     leg.set_terminals(Terminals::Driven(-12.0));
     ticks(&mut leg, 1);
     assert_eq!((leg.supply_v(), leg.motor_nm()), (0.0, 0.0));
-    // When it comes back the bridge does what it was told meanwhile.
+    // When it comes back the bridge follows the command that it was given meanwhile.
     leg.set_supply(true);
     ticks(&mut leg, 200);
     assert!((leg.winding_current_a() - (-12.0 - CONSTANT) / OHM).abs() < 1e-7);

@@ -1,16 +1,16 @@
-//! What an operation leaves that was cut off.
+//! Result of an operation that was cut off.
 
-/// How far it has come, in parts of [`WHOLE`].
+/// Progress of an operation that was cut off, in parts of [`WHOLE`].
 #[derive(Clone, Copy, Debug)]
 pub struct Cut(u32);
 
 /// Parts of an operation.
 pub const WHOLE: u32 = 1024;
 
-/// From here on every bit of an erased sector reads as one.
+/// Progress from which on every bit of an erased sector reads as one, in parts of [`WHOLE`].
 const READS_BLANK: u32 = 922;
 
-/// How easily a bit changes: from 0, at once, to 1,023.
+/// Threshold at which a bit changes: from 0, at once, to 1,023.
 fn threshold(at: usize, bit: u32) -> u32 {
     let n = (at as u64 * 8 + u64::from(bit)).wrapping_add(1);
     let n = (n ^ n >> 29).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -25,7 +25,7 @@ fn easy(at: usize, limit: u32) -> u8 {
 }
 
 impl Cut {
-    /// After `done` of `all`.
+    /// Returns the progress after `done` of `all`.
     pub fn at(done: u64, all: u64) -> Self {
         let part = u64::from(WHOLE) * done.min(all) / all.max(1);
         Self(u32::try_from(part).unwrap_or(WHOLE))
@@ -62,7 +62,7 @@ pub struct Marginal {
 }
 
 impl Marginal {
-    /// After an erasure, complete or cut off.
+    /// Returns the state of a sector after an erasure, complete or cut off.
     pub fn after(cut: Option<Cut>) -> Self {
         Self {
             is_marginal: cut.is_some(),

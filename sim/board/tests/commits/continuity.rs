@@ -1,4 +1,4 @@
-//! What the torque does while parameters change: every tick.
+//! Continuity of the torque while parameters change: every tick.
 //!
 //! Between two ticks without an event the model's torque moves with the spring
 //! and, while it settles, with the slew limit; what compensation adds moves
@@ -25,7 +25,7 @@ fn is_on(values: &Values, name: &str) -> bool {
     value(values, name) != 0.0
 }
 
-/// What may be rendered from a commit on.
+/// Values that may be rendered from a commit on.
 struct Change {
     from: Values,
     to: Values,
@@ -83,7 +83,7 @@ impl Change {
         );
     }
 
-    /// What a tick may add by itself, N·m.
+    /// Torque that a tick may add by itself, N·m.
     fn spring_nm(&self, before: &Sample, after: &Sample) -> f64 {
         let stiffness = ["crepitus.stiffness_nm_per_rad"]
             .map(|name| value(&self.from, name).max(value(&self.to, name)))[0];
@@ -107,7 +107,7 @@ impl Change {
 /// The worst that was met.
 #[derive(Debug, Default)]
 struct Worst {
-    /// Of what the slew limit allows, beside spring and events.
+    /// Movement of the model beside spring and events, as a share of what the slew limit allows.
     slew: f64,
     ticks: u64,
     settling: u64,

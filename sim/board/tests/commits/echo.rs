@@ -1,4 +1,4 @@
-//! Which block carries which revision.
+//! Revision that each block carries.
 
 use crate::connected;
 use crate::support::random_values;
@@ -85,7 +85,7 @@ fn echoed(mut host: Host, phase: u64) {
                 }
             }
         }
-        // It came into force with the first tick of a block: none is mixed.
+        // It took effect with the first tick of a block: no block is mixed.
         let first = first_new.expect("a block");
         assert_eq!(first.first_tick, taken);
         let both_on = [&values, &next].map(|v| v.get(id::CREPITUS)) == [Some(1.0); 2];

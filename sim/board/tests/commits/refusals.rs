@@ -1,4 +1,4 @@
-//! What is not allowed, and changes nothing.
+//! Commits that are not allowed, and change nothing.
 
 use crate::support::{Host, set};
 use crate::{connected, rendering};
@@ -7,7 +7,7 @@ use crepitus_protocol::host::{Operation, Refusal};
 use crepitus_protocol::parameters::{self, Kind, PARAMETERS, When};
 use crepitus_protocol::{Revision, State, ValueError, Values};
 
-/// What becomes of a commit; a refused one has to leave everything as it was.
+/// Refusal of a commit, if any; a refused commit has to leave everything as it was.
 fn refusal(host: &mut Host, change: impl FnOnce(&mut Values)) -> Option<Refusal> {
     let before = host.parameters();
     let commits = host.drive_count(DriveCounter::Commits);

@@ -1,4 +1,4 @@
-//! How long a commit takes, in time of the device.
+//! Duration of a commit, in time of the device.
 
 use crate::rendering;
 use crate::support::random_values;

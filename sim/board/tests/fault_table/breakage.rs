@@ -1,4 +1,4 @@
-//! What can be broken, and mended.
+//! Parts that can be broken, and mended.
 
 use crate::support::Host;
 use crepitus_board::board::Controller::{self, Comms, Drive};
@@ -10,7 +10,7 @@ pub(crate) fn board(host: &mut Host) -> &mut Board {
     host.device.board_mut()
 }
 
-/// In the first tick only.
+/// Applies `what` in the first tick only.
 pub(crate) fn once(since: u64, host: &mut Host, what: impl FnOnce(&mut Board)) {
     if since == 0 {
         what(host.device.board_mut());

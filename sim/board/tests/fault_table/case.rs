@@ -7,7 +7,7 @@ use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::telemetry::Block;
 use std::ops::Range;
 
-/// By so much the estimated speed lags behind a hand's, with a margin.
+/// Lag of the estimated speed behind a hand's, ticks, with a margin.
 pub(crate) const ESTIMATE_TICKS: u64 = 150;
 
 /// A torque whose current is worth measuring: 1.1 N·m.
@@ -20,30 +20,30 @@ const HEAVY: &[(&str, f64)] = &[
 /// A current loop that takes 30 ms.
 pub(crate) const SLOW_LOOP: &[(&str, f64)] = &[("motor.bandwidth_hz", 5.0)];
 
-/// When the cause comes.
+/// Moment at which the cause comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Moment {
-    /// Under torque.
+    /// Moment under torque.
     Armed,
-    /// Before arming, which finds it.
+    /// Moment before arming, which finds the cause.
     Arming,
-    /// While the bridge floats.
+    /// Moment while the bridge floats.
     Disarmed,
 }
 
 /// A cause.
 pub(crate) struct Case {
-    /// What happens.
+    /// Description of what happens.
     pub(crate) name: &'static str,
-    /// With which parameters.
+    /// Parameters that are set, and their values.
     pub(crate) values: &'static [(&'static str, f64)],
-    /// When.
+    /// Moment of the cause.
     pub(crate) moment: Moment,
     /// Armed: what is waited for.
     pub(crate) settled: fn(&Host) -> bool,
-    /// And so many ticks more.
+    /// Further ticks to wait; each number of them is one trial.
     pub(crate) phases: Range<u64>,
-    /// What the drive's blocks have come to say, from the first tick on.
+    /// Falsification of the drive's blocks, from the first tick on.
     pub(crate) falsify: Option<fn(&mut Block)>,
     /// The cause, before each tick; ticks since the first.
     pub(crate) cause: fn(&mut Host, u64),
@@ -55,7 +55,7 @@ pub(crate) struct Case {
     pub(crate) repair: fn(&mut Host),
 }
 
-/// Under torque, on a leg that is being flexed.
+/// Returns a case under torque, on a leg that is being flexed.
 pub(crate) fn case(name: &'static str, cause: fn(&mut Host, u64), repair: fn(&mut Host)) -> Case {
     Case {
         name,
@@ -81,7 +81,7 @@ impl Case {
         }
     }
 
-    /// At this moment, which is the worst, or a little later.
+    /// Returns the case with its cause at this moment, which is the worst, or a little later.
     pub(crate) fn settled(self, settled: fn(&Host) -> bool) -> Self {
         Self {
             settled,
@@ -98,7 +98,7 @@ impl Case {
         Self { lag, ..self }
     }
 
-    /// With much torque, while it pulls.
+    /// Returns the case with much torque, and its cause while the motor pulls.
     pub(crate) fn heavy(self) -> Self {
         Self {
             values: HEAVY,
@@ -128,7 +128,7 @@ pub(crate) fn renewal(host: &Host) -> bool {
     changes(host, host.comms_count(CommsCounter::Renewals)) && moves(host)
 }
 
-/// Whether this is another number than a tick before.
+/// Returns whether this is another number than a tick before.
 fn changes(host: &Host, now: u32) -> bool {
     host.watched.replace(now) != now
 }

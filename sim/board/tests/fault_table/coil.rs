@@ -306,7 +306,7 @@ fn whatever_ends_the_torque_silences_the_coil() {
     }
 }
 
-/// By the gate at nSLEEP, as its pins stay as they were.
+/// The gate at nSLEEP does so, as the pins of the drive stay as they were.
 #[test]
 fn a_drive_that_hangs_has_its_coil_put_to_sleep_by_comms() {
     let mut host = ready(&[]);

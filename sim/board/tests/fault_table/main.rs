@@ -36,7 +36,7 @@ const PAGE: Page = Page {
 /// A tick that has begun is gone through.
 const AT_ONCE_TICKS: u32 = 2;
 
-/// What so many tries give, on all cores.
+/// Results of so many tries, on all cores.
 fn on_all_cores<T: Send + Sync>(count: usize, try_one: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let all: Vec<_> = (0..count).map(|_| OnceLock::new()).collect();

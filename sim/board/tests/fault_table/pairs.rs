@@ -70,7 +70,7 @@ static BREAKAGES: [Breakage; 18] = [
     }),
 ];
 
-/// How many of them are of the first kind.
+/// Number of breakages of the first kind.
 const FAST: usize = 13;
 
 /// A sensor of the current that drifts by less than the checks can tell, A, and what the torque
@@ -105,7 +105,7 @@ const JOINTS: [Joint; 3] = [
     ),
 ];
 
-/// For how long the hand goes on, ticks: 400 ms.
+/// Ticks for which the hand goes on: 400 ms.
 const TICKS: u64 = 8_000;
 
 /// Two of them, of different parts.
@@ -122,7 +122,7 @@ fn pairs() -> impl Iterator<Item = (Pair, &'static [Joint])> {
     })
 }
 
-/// What came of a pair.
+/// Outcome of a pair.
 #[derive(Clone, Copy, Debug, Default)]
 struct Outcome {
     fault: Option<Fault>,
@@ -183,10 +183,10 @@ fn outcome(values: &[(&str, f64)], pair: Pair, later: u64) -> Outcome {
 /// sensors that are wrong in the same way.
 const GEAR_NM: f64 = 6.5;
 
-/// And those not beyond this.
+/// Largest torque with two current sensors that are wrong in the same way, N·m.
 const MOST_NM: f64 = 14.0;
 
-/// In the sensors that see the current both ways, the same is wrong.
+/// Returns whether both sensors of the current are wrong in the same way.
 fn agree(first: &Breakage, second: &Breakage) -> bool {
     (first.0, second.0) == ("sensor", "monitor") && first.1 == second.1
 }

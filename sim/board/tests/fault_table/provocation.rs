@@ -1,4 +1,4 @@
-//! What causes each fault here.
+//! Causes of each fault here.
 
 mod comms;
 mod drive;
@@ -16,7 +16,7 @@ use crepitus_protocol::management::ResetCause::{Requested, Watchdog};
 use crepitus_protocol::telemetry::NO_CURRENT;
 use crepitus_protocol::{Fault, LimitReason};
 
-/// How a fault comes about.
+/// Provocation of a fault.
 pub(crate) enum Provocation {
     /// Each of these causes it.
     Cases(Vec<Case>),
@@ -24,7 +24,7 @@ pub(crate) enum Provocation {
     None(&'static str),
 }
 
-/// What causes a fault. A new one has to find its place.
+/// Provocation of this fault. A new fault has to find its place.
 pub(crate) fn provocation(fault: Fault) -> Provocation {
     Provocation::Cases(match fault {
         Fault::CommsSilent => drive::comms_silent(),
@@ -118,7 +118,7 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
     })
 }
 
-/// What repairs itself.
+/// Cause that repairs itself.
 fn reset(name: &'static str, cause: fn(&mut Host, u64)) -> Case {
     case(name, cause, nothing)
 }

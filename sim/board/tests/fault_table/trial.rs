@@ -15,7 +15,7 @@ const AFTER_TICKS: u64 = 2_000;
 /// seconds.
 const MOST_TICKS: u64 = 60_000;
 
-/// What was measured: the worst of all phases.
+/// Measured times and torque: the worst of all phases.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Times {
     /// Ticks from the cause until the bridge floated for good.
@@ -95,7 +95,7 @@ impl Trial<'_> {
         times
     }
 
-    /// Whether the fault is the one that its detector is in.
+    /// Returns whether the fault is the one that its detector is in.
     fn is_latched(&self) -> bool {
         let board = self.host.device.board();
         let fault = match self.spec.detector {

@@ -23,7 +23,7 @@ fn it_is_refused_while_there_is_torque() {
     assert!(host.device.is_plugged_in());
 }
 
-/// Reboots; whether the host was told that it will be done.
+/// Reboots; returns whether the device reported to the host that it will be done.
 fn reboot(host: &mut Host) -> bool {
     let answer = host.manage(Action::Reboot, 9);
     host.run(400);
@@ -107,7 +107,7 @@ fn what_cannot_be_saved_is_said_and_changes_nothing() {
     assert_eq!(host.parameters(), (first, kept));
 }
 
-/// Comms starts anew by itself: the drive has parameters of the life before,
+/// Comms restarts by itself: the drive has parameters of the life before,
 /// and is given those of this one, even where the numbers are the same.
 #[test]
 fn the_drive_follows_a_comms_that_has_forgotten() {

@@ -1,6 +1,6 @@
-//! Whatever a host has sent is sent again by somebody else: in order, in
+//! Replay of all that a host has sent, by somebody else: in order, in
 //! disorder, doubled, late, after restarts of either controller. Nothing of it is
-//! obeyed.
+//! executed.
 
 use crate::connected;
 use crate::support::{Host, set};
@@ -11,14 +11,14 @@ use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::{Revision, Session, State, Values};
 use fastrand::Rng;
 
-/// What happens between the session and its replay.
+/// Events between the session and its replay.
 #[derive(Clone, Copy, Debug)]
 enum Between {
     Nothing,
     CommsRestarts,
     DriveRestarts,
     BothRestart,
-    /// So many sessions that the device has forgotten the first.
+    /// Enough other sessions for the device to forget the first.
     Others,
 }
 
@@ -72,7 +72,7 @@ fn happen(host: &mut Host, between: Between) {
     host.run(1_000);
 }
 
-/// What a request could change, looked up without one.
+/// State that a request could change, looked up without one.
 fn changes(host: &Host) -> (u32, u32, u32, Revision, Values) {
     let board = host.device.board();
     let (comms, drive) = (board.comms(), board.drive());
@@ -86,7 +86,7 @@ fn changes(host: &Host) -> (u32, u32, u32, Revision, Values) {
 }
 
 #[test]
-fn nothing_that_is_replayed_is_obeyed() {
+fn nothing_that_is_replayed_is_executed() {
     for between in [
         Between::Nothing,
         Between::CommsRestarts,
@@ -163,8 +163,8 @@ fn a_renewal_that_is_repeated_keeps_no_torque_on() {
     assert_eq!(host.status().state, State::Faulted, "the lease has expired");
 }
 
-/// As many requests later as half of the numbers that sixteen bits have: what arms is
-/// still what came before.
+/// A request to arm stays an old one, even as many requests later as half of the numbers
+/// that sixteen bits have.
 #[test]
 fn a_request_to_arm_does_not_become_new_with_time() {
     let mut host = connected();
@@ -204,7 +204,7 @@ fn a_late_request_to_arm_is_not_heard() {
 }
 
 /// After a restart of comms not even what the host sends without having noticed
-/// is obeyed.
+/// is executed.
 #[test]
 fn a_host_that_has_not_noticed_a_restart_is_told() {
     let mut host = connected();

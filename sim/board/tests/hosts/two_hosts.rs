@@ -69,7 +69,7 @@ fn another_host_changes_parameters_of_an_armed_device() {
     );
     assert_eq!(host.parameters().1, values);
     assert_eq!(host.status().state, State::Armed);
-    // The first one knows the parameters before, and is told.
+    // The first one knows the parameters before; its commit is refused as stale.
     let stale = host.ask(Operation::Commit { base, values });
     assert!(matches!(stale, Err(Refusal::Stale { .. })), "{stale:?}");
 }
@@ -109,7 +109,7 @@ fn telemetry_belongs_to_a_session() {
     assert!(received >= 1_900 && dropped == 0, "{received} {dropped}");
 }
 
-/// After a restart of the drive what is not sent is counted anew.
+/// After a restart of the drive the count of what is not sent starts again.
 #[test]
 fn accounting_goes_on_after_a_restart_of_the_drive() {
     let mut host = connected();

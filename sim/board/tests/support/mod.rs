@@ -95,11 +95,11 @@ pub(crate) struct Accounting {
     /// The same before the subscription, which is not of its accounting.
     pub(crate) dropped_before: u32,
     pub(crate) end_tick: u64,
-    /// The number of the drive's start: with another one, accounting begins anew.
+    /// The number of the drive's start: with another one, accounting begins again.
     pub(crate) start: Option<u8>,
 }
 
-/// What arrives, in its order.
+/// Messages that arrive, in their order.
 #[derive(Clone, Debug)]
 pub(crate) enum Heard {
     Reply(Box<Reply>),
@@ -110,7 +110,7 @@ pub(crate) struct Host {
     pub(crate) device: VirtualDevice,
     pub(crate) session: Session,
     pub(crate) number: u32,
-    /// What was sent, if it is wanted, write by write.
+    /// Bytes that were sent, if they are wanted, write by write.
     pub(crate) sent: Option<Vec<Vec<u8>>>,
     /// Nonces of the sessions that are open.
     nonces: HashMap<Session, Nonce>,
@@ -125,7 +125,7 @@ pub(crate) struct Host {
     pub(crate) stream: Option<Vec<Heard>>,
     /// Ticks between two renewals; none without a lease.
     pub(crate) renew_every: Option<u64>,
-    /// Frames that were none.
+    /// Frames that were invalid.
     pub(crate) discarded: u32,
     /// Looks at every tick and every block.
     pub(crate) oracle: Option<Oracle>,
@@ -156,7 +156,7 @@ impl Host {
         }
     }
 
-    /// So many ticks of everything.
+    /// Runs everything for this number of ticks.
     pub(crate) fn run(&mut self, ticks: u64) {
         for _ in 0..ticks {
             self.tick();
@@ -297,7 +297,7 @@ impl Host {
         })
     }
 
-    /// As another host at the same port asks.
+    /// Asks as another host at the same port.
     pub(crate) fn ask_as(
         &mut self,
         session: Session,
@@ -398,7 +398,7 @@ impl Host {
         }
     }
 
-    /// Plugs the device in again, as soon as it can be, and begins anew as
+    /// Plugs the device in again, as soon as it can be, and begins again as
     /// another host.
     pub(crate) fn reconnect(&mut self) {
         let found = (0..400).any(|_| {

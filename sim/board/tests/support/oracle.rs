@@ -1,8 +1,8 @@
-//! What has to be true in every tick, whatever the wires do.
+//! Invariants of every tick, whatever the wires do.
 //!
 //! It believes only what it sees at the ends: heartbeats and renewals that were
 //! counted, the bridge, the values in force at the drive, and the samples that
-//! arrive. Neither controller may have started anew meanwhile.
+//! arrive. Neither controller may have restarted meanwhile.
 
 use crepitus_board::Board;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 pub(crate) struct Oracle {
     /// Every set that was proposed and is whole and allowed.
     proposed: Vec<Values>,
-    /// What came into force at the drive, by its revision.
+    /// Values that took effect at the drive, by their revision.
     pub(crate) in_force: BTreeMap<u32, Values>,
     revision: Revision,
     heartbeats: u32,
@@ -30,7 +30,7 @@ pub(crate) struct Oracle {
 }
 
 impl Oracle {
-    /// Before the first tick of a board with these values kept.
+    /// Returns an oracle before the first tick of a board with these values kept.
     pub(crate) fn new(board: &Board, kept: Values) -> Self {
         Self {
             proposed: vec![Values::default(), kept],
@@ -46,7 +46,7 @@ impl Oracle {
         }
     }
 
-    /// These values may come into force from now on.
+    /// These values may take effect from now on.
     pub(crate) fn propose(&mut self, values: &Values) {
         assert!(DeviceSettings::of(values).is_ok(), "not to be proposed");
         self.proposed.push(*values);
@@ -68,7 +68,7 @@ impl Oracle {
         );
     }
 
-    /// After a tick.
+    /// Checks the board after a tick.
     pub(crate) fn look(&mut self, board: &Board) {
         let now = board.now();
         let heartbeats = board.drive().counters().get(DriveCounter::Heartbeats);

@@ -12,18 +12,18 @@ use crate::first_fall::{Fall, Root, first_fall};
 use crate::series::Series;
 use crepitus_model::Convention;
 
-/// How a series that may begin at zero continues.
+/// Continuation of a series that may begin at zero.
 #[allow(clippy::large_enum_variant, reason = "on the stack for one step")]
 pub(super) enum Leaving {
-    /// Above zero; divided by the power of σ that is zero at the start.
+    /// Continuation above zero: the series, divided by the power of σ that is zero at the start.
     Above(Series),
-    /// Below zero.
+    /// Continuation below zero.
     Below,
     /// It stays.
     Nowhere,
 }
 
-/// How `series`, which is at zero if its start is within `slack`, continues.
+/// Continuation of `series`, which is at zero if its start is within `slack`.
 pub(super) fn leaving(series: &Series, slack: f64) -> Leaving {
     let c = series.coefficients();
     let start = c[0].to_f64();

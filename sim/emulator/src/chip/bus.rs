@@ -16,7 +16,7 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
-/// From here on parts are on the AHB. Below, on an APB, there are only words:
+/// First address of the parts on the AHB. Below, on an APB, there are only words:
 /// the bridge repeats half a word, or a byte, over all of it (RM0090 2.1).
 pub(super) const AHB: u32 = 0x4002_0000;
 
@@ -116,12 +116,12 @@ impl Bus {
         self.is_touched.store(true, Relaxed);
     }
 
-    /// Whether there is something to settle.
+    /// Returns whether there is something to settle.
     pub(crate) fn is_touched(&self) -> bool {
         self.is_touched.load(Relaxed)
     }
 
-    /// After an access or an event: clocks, DMA, deadlines.
+    /// Updates clocks, DMA and deadlines after an access or an event.
     pub(crate) fn settle(&self) {
         self.is_touched.store(false, Relaxed);
         if self.rates.refresh() {
@@ -190,7 +190,7 @@ impl Bus {
         self.look_ahead();
     }
 
-    /// Whether the setup of a pin may have changed since the last call.
+    /// Returns whether the setup of a pin may have changed since the last call.
     pub(crate) fn take_pins_changed(&self) -> bool {
         self.pins_changed.swap(false, Relaxed)
     }

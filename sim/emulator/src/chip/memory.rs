@@ -24,7 +24,7 @@ pub(crate) const RAM_BYTES: u64 = 128 << 10;
 pub(crate) const CCM: u32 = 0x1000_0000;
 pub(crate) const CCM_BYTES: u64 = 64 << 10;
 
-/// Of the system memory with number and flash size.
+/// Address of the system memory with number and flash size.
 const SYSTEM: u64 = 0x1fff_7a00;
 
 /// The chip's number: X 1, Y 2, wafer 3, lot "EMUL405".
@@ -95,7 +95,7 @@ impl Memory {
         observed.observe(ranges);
     }
 
-    /// Whether accesses are written down.
+    /// Returns whether accesses are written down.
     pub(crate) fn is_observed(&self) -> bool {
         self.observed.is_some()
     }

@@ -58,7 +58,7 @@ pub(crate) struct Gate {
     pub(crate) enable: &'static str,
     /// `"apb2rst"`.
     pub(crate) reset: &'static str,
-    /// Which one.
+    /// Index of the bit.
     pub(crate) bit: u32,
 }
 
@@ -88,7 +88,7 @@ impl Gate {
 #[derive(Clone, Copy, Debug, Default)]
 struct Phase {
     tick: u64,
-    /// When that tick was, in units.
+    /// Time of that tick, in units.
     at: u64,
 }
 
@@ -96,7 +96,7 @@ struct Phase {
 pub(crate) struct Part {
     pub(crate) name: &'static str,
     pub(crate) base: u32,
-    /// Of its registers.
+    /// Size of the range of its registers, in bytes.
     pub(crate) bytes: u32,
     pub(crate) registers: Arc<dyn MemOps>,
     pub(crate) peripheral: Arc<dyn Peripheral>,
@@ -149,7 +149,7 @@ impl Part {
         Self::new(name, base, clock, gate, ops, Arc::new(Library(device)))
     }
 
-    /// Whether an address is one of its registers.
+    /// Returns whether an address is one of its registers.
     pub(crate) fn has(&self, address: u32) -> bool {
         address.wrapping_sub(self.base) < self.bytes
     }

@@ -17,9 +17,9 @@ pub(crate) struct Waits {
 #[derive(Debug, Default)]
 struct State {
     flash: FlashInterface,
-    /// When the next access of this step takes place, in cycles of the core's clock.
+    /// Time of the next access of this step, in cycles of the core's clock.
     at: u64,
-    /// Of this step.
+    /// Cycles that the core has waited in this step.
     waits: u64,
     /// An instruction has been fetched in this step.
     has_fetched: bool,

@@ -26,12 +26,12 @@ pub(crate) struct Raised {
 }
 
 impl Raised {
-    /// Whether one is.
+    /// Returns whether one is.
     pub(crate) fn any(&self) -> bool {
         self.lines.load(Relaxed) != 0
     }
 
-    /// Whether something holds for the exceptions of all that are.
+    /// Returns whether something holds for the exceptions of all that are.
     pub(crate) fn all(&self, mut holds: impl FnMut(u16) -> bool) -> bool {
         let lines = self.lines.load(Relaxed);
         if lines == 0 {

@@ -40,7 +40,7 @@ const EOCIE: u32 = 1 << 5;
 const OVRIE: u32 = 1 << 26;
 const SCAN: u32 = 1 << 8;
 const JAUTO: u32 = 1 << 10;
-/// What of CR1 is modelled.
+/// Bits of CR1 that are modelled.
 const KNOWN_1: u32 = EOCIE | OVRIE | SCAN | JAUTO;
 
 /// Injected conversions at most.
@@ -106,7 +106,7 @@ impl Analog {
         lock(&self.shares).insert(pin, share);
     }
 
-    /// What a channel converts.
+    /// Voltage that a channel converts, noise included, as share of the reference.
     fn channel(&self, channel: u32) -> f64 {
         let pin = pin(channel).filter(|pin| self.pins.mode(*pin) == Mode::Analog);
         let share = pin.and_then(|pin| lock(&self.shares).get(&pin).copied());
@@ -147,7 +147,7 @@ struct State {
 /// The device.
 pub(crate) struct Adc {
     state: Mutex<State>,
-    /// From 1 on.
+    /// Number of the converter, from 1 on.
     number: u32,
     rates: Arc<Rates>,
     now: Now,
@@ -175,7 +175,7 @@ impl Adc {
         }
     }
 
-    /// Whether a program has used a feature that is not modelled.
+    /// Returns whether a program has used a feature that is not modelled.
     pub(crate) fn uses_unmodelled_features(&self) -> bool {
         self.asked_too_much.load(Relaxed)
     }
@@ -303,7 +303,7 @@ impl Adc {
         }
     }
 
-    /// As [`Self::end_regular`].
+    /// [`Self::end_regular`] for an injected conversion.
     fn end_injected(state: &mut State, n: u32, counts: u32) -> Option<Place> {
         state.jdr[n as usize] = counts;
         if n < Self::last_injected(state) {

@@ -23,7 +23,7 @@ const SR: u64 = 0x10;
 const EGR: u64 = 0x14;
 const BDTR: u64 = 0x44;
 
-/// In DIER, SR and EGR.
+/// Bit of the break in DIER, SR and EGR.
 const BREAK: u32 = 1 << 7;
 const BKE: u32 = 1 << 12;
 const BKP: u32 = 1 << 13;
@@ -98,7 +98,7 @@ impl Brake {
         }
     }
 
-    /// Whether a program has used a feature that is not modelled.
+    /// Returns whether a program has used a feature that is not modelled.
     pub(crate) fn uses_unmodelled_features(&self) -> bool {
         self.asked_too_much.load(Relaxed)
     }
@@ -115,7 +115,7 @@ impl Brake {
             .write(offset, &value.to_le_bytes(), MemAttrs::DEFAULT);
     }
 
-    /// Whether the break is active.
+    /// Returns whether the break is active.
     fn is_break_active(&self, bdtr: u32) -> bool {
         let is_connected = self.pins.mode(self.input.pin) == self.input.function;
         let is_high = lock(&self.state).input && is_connected;

@@ -50,10 +50,10 @@ const PGPERR: u32 = 1 << 6;
 const PGSERR: u32 = 1 << 7;
 const BSY: u32 = 1 << 16;
 
-/// What ACR keeps.
+/// Bits of ACR that are kept.
 const ACR: u32 = 0x1f07;
 
-/// What is under way.
+/// Operation under way.
 #[derive(Clone, Debug)]
 enum Operation {
     Program { at: usize, bytes: Vec<u8> },
@@ -89,7 +89,7 @@ pub(crate) struct Flash {
     state: Mutex<State>,
     option_bytes: u32,
     now: Now,
-    /// When the operation that is under way ends; 0 if none is.
+    /// End of the operation that is under way; 0 if none is.
     busy_until: AtomicU64,
     asked_too_much: AtomicBool,
 }
@@ -166,12 +166,12 @@ impl Flash {
         bytes
     }
 
-    /// Until when flash cannot be read; 0 if it can.
+    /// Time until which flash cannot be read; 0 if it can.
     pub(crate) fn busy_until(&self) -> u64 {
         self.busy_until.load(Relaxed)
     }
 
-    /// Whether a program has used a feature that is not modelled.
+    /// Returns whether a program has used a feature that is not modelled.
     pub(crate) fn uses_unmodelled_features(&self) -> bool {
         self.asked_too_much.load(Relaxed)
     }

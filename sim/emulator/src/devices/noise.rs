@@ -26,7 +26,7 @@ impl Noise {
         (sum - f64::from(UNIFORM) / 2.0) * self.deviation
     }
 
-    /// From 0 to 1: SplitMix64.
+    /// Uniformly distributed number from 0 to 1: SplitMix64.
     fn uniform(&mut self) -> f64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut mixed = self.state;

@@ -35,7 +35,7 @@ use rsemu::core::wire::{Level, WireSource};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
-/// Where its registers end: 256 KB after they begin.
+/// Size of its register space, bytes: 256 KB.
 pub(crate) const BYTES: u32 = 0x4_0000;
 
 /// Endpoints each way.
@@ -111,7 +111,7 @@ struct State {
 }
 
 impl State {
-    /// At the reset of the controller.
+    /// Returns the state at the reset of the controller.
     fn reset() -> Self {
         Self {
             gusbcfg: 0xa00,
@@ -296,7 +296,7 @@ impl Otg {
         }
     }
 
-    /// Whether a program has used a feature that is not modelled.
+    /// Returns whether a program has used a feature that is not modelled.
     pub(crate) fn uses_unmodelled_features(&self) -> bool {
         self.asked_too_much.load(Relaxed)
     }
@@ -305,7 +305,7 @@ impl Otg {
         self.now.load(Relaxed)
     }
 
-    /// Whether a hub sees a device: its pull-up is on, and reaches the plug.
+    /// Returns whether a hub sees a device: its pull-up is on, and reaches the plug.
     fn is_on_the_bus(&self, state: &State) -> bool {
         state.is_pulled_up()
             && PINS.iter().all(|pin| self.pins.mode(*pin) == FUNCTION)

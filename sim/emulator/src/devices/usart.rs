@@ -50,7 +50,7 @@ const BITS: u64 = 10;
 /// A character on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Character {
-    /// When its stop bit ends, in units of time.
+    /// End of its stop bit, in units of time.
     pub at: u64,
     /// Its byte.
     pub byte: u8,
@@ -88,7 +88,7 @@ impl Wires {
     }
 }
 
-/// Where its DMA requests go: controller, stream and channel.
+/// Destination of its DMA requests: controller, stream and channel.
 pub(crate) type Request = (Arc<Dma>, usize, u8);
 
 /// The device.
@@ -143,7 +143,7 @@ impl Usart {
         self.units(&lock(&self.state))
     }
 
-    /// Whether a program has used a feature that is not modelled.
+    /// Returns whether a program has used a feature that is not modelled.
     pub(crate) fn uses_unmodelled_features(&self) -> bool {
         self.asked_too_much.load(Relaxed)
     }

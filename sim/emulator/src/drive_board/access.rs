@@ -48,7 +48,7 @@ impl<C: CommsSide> DriveBoard<C> {
         &mut self.comms
     }
 
-    /// Whether halves are synchronised with the bridge's timer: the image runs.
+    /// Returns whether halves are synchronised with the bridge's timer: the image runs.
     pub fn is_synchronised(&self) -> bool {
         self.is_synchronised
     }

@@ -62,7 +62,7 @@ impl<'a> Timer<'a> {
         }
     }
 
-    /// What an input sees while its reference is at this level; `None`: nothing defines it.
+    /// Level at an input while its reference is at this level; `None`: nothing defines it.
     fn level(&self, input: usize, reference: bool) -> Option<bool> {
         let pin: Pin = [COIL_IN1, COIL_IN2][input];
         let setup = self.mcu.pin_setup(pin);

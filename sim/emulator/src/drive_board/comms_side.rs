@@ -1,4 +1,4 @@
-//! What is at the other end of the drive's link.
+//! The other end of the drive's link.
 
 use crate::devices::usart::Character;
 use crate::time::Time;
@@ -10,7 +10,7 @@ pub trait CommsSide {
     /// what comes back, with times after `end`.
     fn run(&mut self, sent: Vec<Character>, end: Time, now: Time) -> Vec<Character>;
 
-    /// Whether its enable line is on.
+    /// Returns whether its enable line is on.
     fn line_is_on(&self) -> bool;
 
     /// Stops it, its line as it is.

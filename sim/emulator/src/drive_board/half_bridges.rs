@@ -65,7 +65,7 @@ pub(super) struct Quiet {
 }
 
 impl Quiet {
-    /// Where both are.
+    /// Time without switching that both have in common.
     pub(super) fn and(self, other: Self) -> Self {
         Self {
             before: self.before.min(other.before),
@@ -134,7 +134,7 @@ impl<'a> Timer<'a> {
         })
     }
 
-    /// What the gates of a half see.
+    /// Levels at the gates of a half.
     fn switches(&self, channel: usize, reference: Option<bool>) -> Switches {
         let outputs = self.outputs(channel, reference);
         let pins = [HALF_A, HALF_B][channel];
@@ -201,7 +201,7 @@ impl<'a> Timer<'a> {
         Terminals::Driven(share * supply_v)
     }
 
-    /// What is wrong with the mode of the timer or of a channel.
+    /// Problem with the mode of the timer or of a channel.
     fn mode_problem(&self) -> Option<&'static str> {
         if self.cr1 & CMS == 0 {
             Some("not centre-aligned")

@@ -7,10 +7,10 @@ use crepitus_protocol::frame::Frame;
 /// A character at 4.2 Mbaud: ten bits.
 const CHARACTER: Time = Time::from_units(800);
 
-/// From comms, which sends one frame after the other, as DMA does.
+/// Wire from comms, which sends one frame after the other, as DMA does.
 #[derive(Debug, Default)]
 pub(super) struct Down {
-    /// When the last frame ends.
+    /// End of the last frame.
     free: Time,
     pub(super) keeps: bool,
     pub(super) kept: Vec<Character>,
@@ -45,7 +45,7 @@ impl Down {
     }
 }
 
-/// From the drive.
+/// Wire from the drive.
 #[derive(Debug, Default)]
 pub(super) struct Up {
     waiting: Vec<Character>,

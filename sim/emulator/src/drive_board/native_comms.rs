@@ -40,7 +40,7 @@ fn identity() -> Identity {
 }
 
 impl NativeComms {
-    /// Just switched on, with these parameters stored.
+    /// Returns comms just switched on, with these parameters stored.
     pub fn new(saved: Option<(Revision, Values)>) -> Self {
         let comms = Comms::new(&Boot {
             self_test: SelfTest::default(),

@@ -183,7 +183,7 @@ pub enum BoardError {
         /// 'A' or 'B'.
         half: char,
     },
-    /// Nothing defines the level at a gate.
+    /// Undefined level at a gate.
     #[error("a switch of half {half} is neither driven nor pulled down")]
     UndefinedSwitch {
         /// 'A' or 'B'.
@@ -198,25 +198,25 @@ pub enum BoardError {
     /// The timer does not make the bridge's PWM.
     #[error("TIM1 does not make the PWM of the bridge: {what}")]
     Pwm {
-        /// What is wrong.
+        /// Description of the problem.
         what: &'static str,
     },
     /// The timer does not drive the coil's driver as it should.
     #[error("TIM8 does not make the PWM of the coil's driver: {what}")]
     CoilPwm {
-        /// What is wrong.
+        /// Description of the problem.
         what: &'static str,
     },
     /// The dead time does not suit the bridge.
     #[error("a dead time of {ns} ns; the bridge needs 200 to 500 ns")]
     DeadTime {
-        /// As the timer is set.
+        /// Dead time to which the timer is set, ns.
         ns: u64,
     },
     /// A converter samples another channel than one of its inputs.
     #[error("ADC{converter} samples channel {channel}, to which none of its inputs is wired")]
     Channel {
-        /// From 1 on.
+        /// The converter, from 1 on.
         converter: u32,
         /// The channel.
         channel: u32,
@@ -226,21 +226,21 @@ pub enum BoardError {
         "ADC{converter} samples {off_ns} ns off the middle of the tick; at most 100 ns are allowed"
     )]
     SamplingTime {
-        /// From 1 on.
+        /// The converter, from 1 on.
         converter: u32,
-        /// From the middle of the tick to the middle of its samplings.
+        /// Time between the middle of the tick and the middle of its samplings, ns.
         off_ns: u64,
     },
     /// A switch opens or closes while a converter samples or converts.
     #[error("a switch of the bridge switches while ADC{converter} samples or converts")]
     SwitchingWhileSampling {
-        /// From 1 on.
+        /// The converter, from 1 on.
         converter: u32,
     },
     /// The link has another speed.
     #[error("a character of USART6 takes {units} units of time; one of the link takes 800")]
     Baud {
-        /// As the program has set it.
+        /// Duration of a character as the program has set it, in units of time.
         units: u64,
     },
     /// The counter does not follow the encoder.

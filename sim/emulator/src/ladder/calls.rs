@@ -25,7 +25,7 @@ impl Calls {
 
     /// Records an executed instruction and its cycles.
     pub fn instruction(&mut self, pc: u32, cycles: u32) {
-        /// Of `blx` with a register, which is how an unknown function is
+        /// Length of `blx` with a register, which is how an unknown function is
         /// called.
         const CALL_BYTES: u32 = 2;
         if let Some((call, back)) = &mut self.current {

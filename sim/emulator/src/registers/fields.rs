@@ -52,13 +52,13 @@ pub(super) const fn register(
 }
 
 impl Register {
-    /// With another value after a reset.
+    /// Returns the register with another value after a reset.
     pub(super) const fn from(mut self, reset: u32) -> Self {
         self.reset = reset;
         self
     }
 
-    /// Without these bits.
+    /// Returns the register without these bits.
     pub(super) const fn without(mut self, bits: u32) -> Self {
         self.ignored = bits;
         self

@@ -354,7 +354,7 @@ const STREAM: &[Field] = &[
     number("CHSEL", 25, 3),
 ];
 
-/// Without lengths and memory addresses, which a program or a build moves.
+/// Registers of the streams without lengths and memory addresses, which a program or a build moves.
 const STREAMS: &[Register] = &[
     register("S0CR", 0x10, STREAM),
     register("S1CR", 0x28, STREAM),

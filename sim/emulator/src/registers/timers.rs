@@ -144,7 +144,7 @@ const CCER: Register = register(
 const PSC: Register = register("PSC", 0x28, &[number("PSC", 0, 16)]);
 const RCR: Register = register("RCR", 0x30, &[number("REP", 0, 8)]);
 
-/// At rest: changed while the bridge is driven.
+/// Compare value at rest: changed while the bridge is driven.
 const CCR1: Register = register("CCR1", 0x34, &[number("CCR1", 0, 16)]);
 const CCR2: Register = register("CCR2", 0x38, &[number("CCR2", 0, 16)]);
 const CCR3: Register = register("CCR3", 0x3c, &[number("CCR3", 0, 16)]);

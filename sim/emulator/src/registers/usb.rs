@@ -35,7 +35,7 @@ const FROM_HOST: &[Field] = &[
     bit("STALL", 21),
 ];
 
-/// Of the whole controller, and as a device.
+/// Registers of the whole controller, and those of its role as a device.
 pub(super) const OTG: &[Register] = &[
     register("GAHBCFG", 0x008, &[bit("GINT", 0)]),
     register(

@@ -30,12 +30,12 @@ impl Before {
 }
 
 impl Stm32f405 {
-    /// After the step that has taken an exception.
+    /// Restores `FPSCR` after the step that has taken an exception.
     pub(super) fn keep_flags(&self, before: &Before) {
         self.core.set_fpscr(before.fpscr);
     }
 
-    /// After the step that has stacked a frame: adds `ITSTATE` to it.
+    /// Adds `ITSTATE` to a frame, after the step that has stacked the frame.
     pub(super) fn keep_it_block(&self, before: &Before) {
         let it = before.xpsr & xpsr::IT_MASK;
         if it == 0 {

@@ -30,11 +30,11 @@ use rsemu::cpu::arm::v7m::{ArmV7m, Regs, xpsr};
 use std::sync::Arc;
 use timing::Timing;
 
-/// With fewer plain instructions in a row, reading and writing the library's
+/// Least number of plain instructions in a row: with fewer, reading and writing the library's
 /// registers takes longer than its step.
 const SHORTEST_RUN: u8 = 2;
 
-/// What is known of the core while the fast path runs.
+/// Known state of the core while the fast path runs.
 #[derive(Clone, Copy)]
 struct Context {
     /// Unaligned accesses and divisions by zero may fault.

@@ -24,13 +24,13 @@ impl Stm32f405 {
         self.on_the_line(|chip| chip.otg.resume());
     }
 
-    /// Whether a hub reports a device: the cable is plugged in and the program
+    /// Returns whether a hub reports a device: the cable is plugged in and the program
     /// has the pull-up on.
     pub fn is_connected(&self) -> bool {
         self.chip.otg.is_connected()
     }
 
-    /// What the host does, at the core's time.
+    /// Performs an action of the host, at the core's time.
     fn on_the_line<T>(&mut self, act: impl FnOnce(&crate::chip::Chip) -> T) -> T {
         self.chip.bus.set_now(self.now);
         self.chip.bus.touch("OTG_FS");

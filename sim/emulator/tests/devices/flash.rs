@@ -18,7 +18,7 @@ const BSY: u32 = 1 << 16;
 const PGSERR: u32 = 1 << 7;
 const PGPERR: u32 = 1 << 6;
 
-/// In sector 2, whose number is 2.
+/// Address in sector 2, and the number of that sector, 2, in CR.
 const PLACE: u32 = 0x0800_8000;
 const SECTOR: u32 = 2 << 3;
 

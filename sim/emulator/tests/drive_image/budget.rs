@@ -1,4 +1,4 @@
-//! What a tick may cost, in cycles of 8,400: modelled with 0 wait states, and
+//! Budget of a tick, in cycles of 8,400: modelled with 0 wait states, and
 //! with the modelled flash.
 
 use crate::host::{Flash, Host, examination, image, scene};
@@ -30,7 +30,7 @@ struct Limits {
     share: u64,
     /// The share in a tick with a commit, percent.
     commit_share: u64,
-    /// After the caches of flash were emptied, percent.
+    /// The share after the caches of flash were emptied, percent.
     cold_share: u64,
     /// `render_torque`: the encoder and `frozen` crepitus, cycles.
     render_cycles: u64,

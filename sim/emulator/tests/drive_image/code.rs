@@ -26,7 +26,7 @@ pub(crate) fn store(address: u32, value: u32) -> Vec<u16> {
     [&load(0, address)[..], &load(1, value), &[0x6001]].concat()
 }
 
-/// As it lies in flash.
+/// Returns the instructions as they lie in flash.
 pub(crate) fn bytes(instructions: &[u16]) -> Vec<u8> {
     let halves = instructions.iter();
     halves.flat_map(|half| half.to_le_bytes()).collect()

@@ -5,8 +5,8 @@ use crate::host::{Flash, Host, examination, image};
 use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::{Revision, TICK_S, Values, parameters};
 
-/// Of both limits of the joint, N·m, and how fast they may change: a ramp of
-/// 50 ms.
+/// Change of both limits of the joint, N·m, and the rate at which they may change:
+/// a ramp of 50 ms.
 const CHANGE_NM: f64 = 0.1;
 const SLEW_NM_PER_S: f64 = 2.0;
 

@@ -13,7 +13,7 @@ const RENDER: u16 = 16 + 30;
 const UNDEFINED: [u8; 2] = [0x00, 0xde];
 const FOREVER: [u8; 2] = [0xfe, 0xe7];
 
-/// In CFSR: an undefined instruction. In HFSR: it became a HardFault.
+/// Bits of CFSR (an undefined instruction) and of HFSR (it became a HardFault).
 const UNDEFINSTR: u32 = 1 << 16;
 const FORCED: u32 = 1 << 30;
 

@@ -29,7 +29,7 @@ fn under_torque() -> Option<Host> {
     Some(host)
 }
 
-/// What the drive says it is.
+/// Fault that the drive reports.
 fn drive_fault(host: &mut Host) -> u8 {
     match host.ask(Operation::Status) {
         Ok(Answer::Status(status)) => status.drive_fault,
@@ -208,7 +208,7 @@ fn a_stopped_timer_of_the_command() {
     );
 }
 
-/// With the comparator blind, too: the two ways of the current differ.
+/// The fault is found with the comparator blind, too: the two ways of the current differ.
 #[test]
 fn a_current_sensor_that_is_broken() {
     for (path, sensor) in [

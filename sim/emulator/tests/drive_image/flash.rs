@@ -98,7 +98,7 @@ impl Watch for Steps {
     }
 }
 
-/// Whether the instruction at an offset in flash has 32 bits.
+/// Returns whether the instruction at an offset in flash has 32 bits.
 fn is_wide(flash: &[u8], offset: u32) -> bool {
     flash[offset as usize + 1] >> 3 >= 0b11101
 }

@@ -27,7 +27,7 @@ pub(crate) enum Flash {
 impl Flash {
     pub(crate) const BOTH: [Self; 2] = [Self::ZeroWaitStates, Self::Modelled];
 
-    /// What figures are.
+    /// Label of figures.
     pub(crate) fn label(self) -> &'static str {
         match self {
             Self::ZeroWaitStates => "modelled, 0 wait states",
@@ -52,7 +52,7 @@ pub(crate) struct Host {
     replies: Vec<Reply>,
     from_drive: Decoder,
     decoded: usize,
-    /// What the drive has told.
+    /// Blocks that the drive has sent.
     pub(crate) blocks: Vec<Block>,
     /// Checks every step of the core.
     pub(crate) locks: Option<LockCheck>,
@@ -85,7 +85,7 @@ impl Host {
         Self::listening(image, scene, &[])
     }
 
-    /// As [`Self::listening`], with this timing from the first instruction on.
+    /// [`Self::listening`] with this timing from the first instruction on.
     pub(crate) fn timed(image: &Image, scene: &Scene, registers: &[u32], flash: Flash) -> Self {
         let mut host = Self::switched_on(image, scene, registers);
         if flash == Flash::Modelled {
@@ -95,7 +95,7 @@ impl Host {
         host
     }
 
-    /// As [`Self::listening`], with a core that stands still for so long before it sets
+    /// [`Self::listening`] with a core that stands still until `late` before it sets
     /// anything up: comms sends meanwhile.
     pub(crate) fn late(image: &Image, scene: &Scene, registers: &[u32], late: Time) -> Self {
         let mut host = Self::switched_on(image, scene, registers);
@@ -107,13 +107,13 @@ impl Host {
         host
     }
 
-    /// With accesses to these registers written down from the first
+    /// [`Self::new`] with accesses to these registers written down from the first
     /// instruction on.
     pub(crate) fn listening(image: &Image, scene: &Scene, registers: &[u32]) -> Self {
         Self::timed(image, scene, registers, Flash::ZeroWaitStates)
     }
 
-    /// As [`Self::new`], with `locks` checked from the first instruction on.
+    /// [`Self::new`] with `locks` checked from the first instruction on.
     pub(crate) fn locked(image: &Image, scene: &Scene, locks: LockCheck) -> Self {
         let mut host = Self::switched_on(image, scene, &[]);
         host.board.mcu_mut().observe_ram(&locks.ranges());
@@ -165,7 +165,7 @@ impl Host {
         }
     }
 
-    /// As [`Self::run`], passing every step of the core to `watch`.
+    /// Runs as [`Self::run`] does, passing every step of the core to `watch`.
     pub(crate) fn watch(&mut self, ticks: u64, watch: &mut dyn Watch) {
         for _ in 0..ticks {
             self.renew();
@@ -186,7 +186,7 @@ impl Host {
         self.say(self.number, Operation::Renew);
     }
 
-    /// After a tick: what was sent, and what the board found.
+    /// Counts a tick that has passed; reads what was sent, and checks what the board found.
     fn hear(&mut self) {
         self.ticks += 1;
         self.listen();
@@ -279,7 +279,7 @@ impl Host {
         }
     }
 
-    /// As [`Self::arm`], with the answer.
+    /// Arms as [`Self::arm`] does; returns the answer.
     pub(crate) fn try_to_arm(&mut self) -> Result<Answer, Refusal> {
         self.holds_lease = true;
         self.say_renewal();
@@ -295,7 +295,7 @@ impl Host {
         panic!("not armed");
     }
 
-    /// Where the idle loop goes on after it has slept.
+    /// Address at which the idle loop continues after it has slept.
     pub(crate) fn idle_pc(&mut self) -> u32 {
         for _ in 0..100 {
             let mcu = self.board.mcu();
@@ -307,7 +307,7 @@ impl Host {
         panic!("the idle loop does not run");
     }
 
-    /// Whether the drive's last block has shown torque.
+    /// Returns whether the drive's last block has shown torque.
     pub(crate) fn shows_torque(&self) -> bool {
         let last = self.blocks.last().and_then(|block| block.samples.last());
         last.is_some_and(|sample| sample.torque_nm.abs() > 0.05)

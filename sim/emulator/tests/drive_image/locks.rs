@@ -117,7 +117,7 @@ pub(crate) struct LockCheck {
     /// Accesses by resource and exception.
     accesses: BTreeMap<(String, u16), u64>,
     broken: BTreeSet<String>,
-    /// Which exception has been interrupted by which.
+    /// Pairs of an exception that was interrupted and the one that interrupted it.
     preemptions: BTreeSet<(u16, u16)>,
     running: Vec<u16>,
 }
@@ -247,7 +247,7 @@ fn every_access_to_a_shared_resource_is_locked() {
 
 #[test]
 fn a_core_that_stalls_at_any_phase_breaks_no_lock_and_no_tick() {
-    /// From phase to phase, a multiple of nothing.
+    /// Step from phase to phase, a multiple of nothing.
     const STEP_NS: u64 = 730;
     const TICK_NS: u64 = 50_000;
     /// Lengths of stalls, in turn: up to the next task, or over it.

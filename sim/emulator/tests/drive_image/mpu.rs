@@ -20,7 +20,7 @@ const RCC_APB2ENR: u32 = 0x4002_3844;
 /// Exception of `command_motor`.
 const COMMAND: u16 = 16 + 29;
 
-/// Of the drive's RAM, behind its variables; of its flash, where nothing is stored.
+/// Addresses in the drive's RAM, behind its variables, and in its flash, where nothing is stored.
 const FREE_RAM: u32 = 0x2001_f000;
 const FREE_FLASH: u32 = 0x080f_0000;
 
@@ -159,7 +159,7 @@ fn command_motor_writes_to_the_outputs_only_where_it_sets_them() {
     assert_reset(&mut host, "command_motor");
 }
 
-/// As its flash driver does: unlocked, and by words.
+/// Programs as the flash driver of comms does: unlocked, and by words.
 #[test]
 fn comms_can_program_its_parameter_sectors_and_nothing_else() {
     const FLASH_KEYR: u32 = 0x4002_3c04;

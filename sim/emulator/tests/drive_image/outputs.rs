@@ -1,4 +1,4 @@
-//! What switches the outputs off: each way by itself, without the help of the
+//! Ways in which the outputs are switched off: each by itself, without the help of the
 //! next one.
 
 use crate::actuator::{MOE, TIM8_BDTR};
@@ -74,7 +74,7 @@ fn a_line_that_stays_high_is_noticed_by_its_read_back() {
     assert_eq!(drive_fault(&mut host), Fault::EnableStuckOn.code());
 }
 
-/// Whether the program has switched off line, bridge and coil, before the reset that
+/// Returns whether the program has switched off line, bridge and coil, before the reset that
 /// then does so in any case.
 fn assert_off_before_reset(host: &Host, accesses: &[Access]) {
     let (reset, cause) = *host.board.resets().first().expect("a reset");

@@ -80,14 +80,14 @@ const RUN: u32 = 16;
 /// Ticks that are compared, at least.
 const TICKS: usize = 20_000;
 
-/// As the sum of a converter's four counts becomes amperes, in the same arithmetic.
+/// Converts the sum of a converter's four counts to amperes, in the image's arithmetic.
 fn amperes(sum: u32) -> f32 {
     #[expect(clippy::cast_precision_loss, reason = "fourteen bits")]
     let sum = sum as f32;
     (sum * (1.0 / (4.0 * 4096.0)) - 0.5) * (3.3 / (20.0 * 0.033))
 }
 
-/// As a channel's counts become what it measures, in the same arithmetic.
+/// Converts a channel's counts to what it measures, in the image's arithmetic.
 fn slow(channel: u32, counts: u32) -> SlowInput {
     #[expect(clippy::cast_precision_loss, reason = "twelve bits")]
     let share = counts as f32 * (1.0 / 4096.0);
@@ -98,7 +98,7 @@ fn slow(channel: u32, counts: u32) -> SlowInput {
     }
 }
 
-/// As the counts of the coil's current become amperes, in the same arithmetic.
+/// Converts the counts of the coil's current to amperes, in the image's arithmetic.
 fn coil_amperes(counts: u32) -> f32 {
     #[expect(clippy::cast_precision_loss, reason = "twelve bits")]
     let share = counts as f32 * (1.0 / 4096.0);
@@ -109,13 +109,13 @@ fn coil_amperes(counts: u32) -> f32 {
 struct Replay<'a> {
     drive: Drive,
     inputs: Inputs,
-    /// What it wanted of motor and coil in its last tick.
+    /// Outputs that it wanted of motor and coil in its last tick.
     outputs: Outputs,
     /// The first compare value of a pair.
     compare: u32,
     /// Duties of the image that were compared with it.
     duties: u64,
-    /// Of the counts of a current that were read.
+    /// Sum of the counts of a current that were read.
     sum: u32,
     /// Channel of the third converter.
     channel: u32,
@@ -249,7 +249,7 @@ impl Replay<'_> {
         }
     }
 
-    /// Whether the next byte ends a frame.
+    /// Returns whether the next byte ends a frame.
     fn is_end(&self) -> bool {
         self.bytes.as_slice().first() == Some(&DELIMITER)
     }

@@ -1,5 +1,5 @@
-//! What the image makes of its seal, of flash that does not hold what was sealed, and
-//! of option bytes.
+//! Response of the image to its seal, to flash that does not hold what was sealed, and
+//! to option bytes.
 
 use crate::host::{Host, examination, image};
 use crepitus_emulator::Image;

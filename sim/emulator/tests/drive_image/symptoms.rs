@@ -1,4 +1,4 @@
-//! What symptoms cost on the target, each by itself and together, on a shaft that is
+//! Cost of symptoms on the target, each by itself and together, on a shaft that is
 //! moved so that everything happens to them.
 
 use crate::budget::{RENDER, TICK_CYCLES, percent};
@@ -149,7 +149,7 @@ pub(crate) const CASES: [Case; 10] = [
 /// Those that are paid from the tank.
 const GIVE_ENERGY: [&str; 2] = ["clonus", "reflex"];
 
-/// How many of them are different symptoms: the first ones.
+/// Number of different symptoms in `CASES`: the first ones.
 pub(crate) const SYMPTOMS: usize = effects::SYMPTOMS.len();
 
 #[test]
@@ -273,7 +273,7 @@ fn tick_of(at: Time) -> u64 {
     at.units() / Time::from_us(50).units()
 }
 
-/// What a symptom or the actuator adds to each tick of a period.
+/// Cycles that a symptom or the actuator adds to each tick of a period.
 pub(crate) fn added(with: &mut Host, without: &mut Host) -> Vec<u64> {
     // The same ticks of the same joint on the same shaft.
     let [there, here] = [&*with, &*without].map(|host| tick_of(host.board.mcu().now()));

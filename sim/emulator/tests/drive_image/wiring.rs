@@ -101,7 +101,7 @@ const CHANGES: [Change; 16] = [
 
 #[test]
 fn every_mismatch_is_named() {
-    /// Before the watchdog resets the hung core.
+    /// Limit of the wait, half ticks: before the watchdog resets the hung core.
     const MOST_HALVES: usize = 200;
     let Some(image) = image() else { return };
     let mut host = Host::new(&image, &examination());

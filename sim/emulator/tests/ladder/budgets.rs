@@ -87,7 +87,7 @@ const SYMPTOMS: [(&str, u32); 7] = [
     ("texture", 1_850),
 ];
 
-/// On strokes through walls, catches, blades, beats and snaps, and on hard inputs at the
+/// The budgets hold on strokes through walls, catches, blades, beats and snaps, and on hard inputs at the
 /// thresholds.
 #[test]
 fn every_symptom_stays_within_its_budget() {

@@ -16,7 +16,7 @@ use std::process::{Command, Stdio};
 
 const QEMU: &str = "qemu-system-arm";
 
-/// Whether it is there; if not, a line about it.
+/// Returns whether it is there; if not, a line about it.
 ///
 /// # Panics
 /// If it is not although `CREPITUS_NEEDS_QEMU` is set.
@@ -33,7 +33,7 @@ pub(crate) fn is_there() -> bool {
     is_there
 }
 
-/// An instruction a block, as this version wants to be told.
+/// Arguments for one instruction a block, as this version expects them.
 fn one_instruction_a_block() -> &'static [&'static str] {
     let version = Command::new(QEMU).arg("--version").output().unwrap();
     let version = String::from_utf8_lossy(&version.stdout).into_owned();
@@ -124,7 +124,7 @@ fn words(plan: &Plan, inputs: &[Input]) -> Vec<u32> {
     words
 }
 
-/// Where the instruction of a line of the log is:
+/// Address of the instruction of a line of the log:
 /// `Trace 0: 0x7f12 [00000000/08000418/00000110/ff000001] name`.
 fn address(line: &str) -> Option<u32> {
     let inside = line.strip_prefix("Trace ")?.split('[').nth(1)?;

@@ -1,4 +1,4 @@
-//! What can go wrong between the two images and their host: torque is off in the
+//! Faults between the two images and their host: torque is off in the
 //! time of the fault table, and the device recovers while the other side runs on.
 
 use crate::host::{Host, MS, arm, boards, run, ticks_until_off, under_torque};

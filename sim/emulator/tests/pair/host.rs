@@ -18,7 +18,7 @@ const TIMEOUT_TICKS: u64 = 2_000;
 /// The cable.
 pub(crate) struct Cable {
     pub(crate) pair: Pair,
-    /// What the host has sent, write by write, if it is wanted.
+    /// Bytes that the host has sent, write by write, if they are wanted.
     pub(crate) sent: Option<Vec<Vec<u8>>>,
     /// Says after a tick whether power fails now.
     pub(crate) power_fails: Option<PowerFails>,
@@ -78,7 +78,7 @@ pub(crate) fn connected() -> Option<Host> {
     Some(client(pair()?))
 }
 
-/// Under torque: zeroed where the leg is, armed, and the hand moves.
+/// A client of the pair under torque: zeroed where the leg is, armed, and the hand moves.
 pub(crate) fn under_torque() -> Option<Host> {
     let mut host = connected()?;
     arm(&mut host);

@@ -42,7 +42,7 @@ fn play(pair: &mut Pair, steps: &[Step]) {
     }
 }
 
-/// After these steps the device is still the same, and answers.
+/// Checks that after these steps the device is still the same, and answers.
 fn survives(steps: &[Step]) {
     let Some(mut pair) = plugged_in() else { return };
     play(&mut pair, steps);

@@ -1,4 +1,4 @@
-//! How busy the core of comms is: modelled, 0 wait states.
+//! Load of the core of comms: modelled, 0 wait states.
 
 use crate::host::{boards, connected, run};
 use crepitus_emulator::Mcu as _;

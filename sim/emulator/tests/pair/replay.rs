@@ -1,5 +1,5 @@
-//! Whatever a host has sent is sent again, in order, doubled and in disorder, also
-//! after restarts of either image. Nothing of it is obeyed.
+//! Replay of all that a host has sent: in order, doubled and in disorder, also
+//! after restarts of either image. Nothing of it is executed.
 
 use crate::host::{Host, arm, boards, connect_as, pair, plugged_in, run};
 use crepitus_client::Transport as _;
@@ -10,7 +10,7 @@ use crepitus_protocol::parameters::id::STATIC_TORQUE;
 use crepitus_protocol::{Fault, Revision, State};
 use std::time::Duration;
 
-/// What happens between the session and its replay.
+/// Event between the session and its replay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Between {
     Nothing,
@@ -19,10 +19,10 @@ enum Between {
     BothRestart,
 }
 
-/// What a host has sent.
+/// Frames that a host has sent.
 struct Sent {
     frames: Vec<Vec<u8>>,
-    /// So many of them open the session.
+    /// Number of the frames that open the session.
     opening: usize,
 }
 
@@ -48,7 +48,7 @@ fn session() -> Option<(Host, Sent)> {
     Some((host, Sent { frames, opening }))
 }
 
-/// What a replayed request could change.
+/// State that a replayed request could change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Changes {
     /// Armings, commits, renewals.
@@ -77,7 +77,7 @@ fn changes(host: Host, session: u32) -> (Host, Changes) {
     (host, changes)
 }
 
-fn nothing_is_obeyed(between: Between) {
+fn nothing_is_executed(between: Between) {
     let Some((mut host, sent)) = session() else {
         return;
     };
@@ -130,22 +130,22 @@ fn nothing_is_obeyed(between: Between) {
 
 #[test]
 fn at_once() {
-    nothing_is_obeyed(Between::Nothing);
+    nothing_is_executed(Between::Nothing);
 }
 
 #[test]
 fn after_a_restart_of_comms() {
-    nothing_is_obeyed(Between::CommsRestarts);
+    nothing_is_executed(Between::CommsRestarts);
 }
 
 #[test]
 fn after_a_restart_of_the_drive() {
-    nothing_is_obeyed(Between::DriveRestarts);
+    nothing_is_executed(Between::DriveRestarts);
 }
 
 #[test]
 fn after_a_restart_of_both() {
-    nothing_is_obeyed(Between::BothRestart);
+    nothing_is_executed(Between::BothRestart);
 }
 
 /// Renewals that were delayed do not keep torque on.

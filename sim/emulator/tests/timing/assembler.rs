@@ -59,7 +59,7 @@ impl Assembler {
     }
 }
 
-/// Where the program and the handler of the timers begin.
+/// Offsets at which the program and the handler of the timers begin.
 pub(crate) const PROGRAM: usize = 0x200;
 pub(crate) const HANDLER: usize = 0x300;
 

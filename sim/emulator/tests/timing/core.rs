@@ -32,7 +32,7 @@ fn latencies(period: u32, rest: &[u16]) -> Vec<u32> {
 #[test]
 fn entry_takes_twelve_cycles_after_the_instruction_that_is_interrupted() {
     // `b .` takes three: the interrupt finds it at its end, or one or two
-    // cycles before. The handler's return begins the loop anew, so which one
+    // cycles before. The handler's return begins the loop again, so which one
     // depends on the period.
     let periods = 1_000..1_003;
     let seen: BTreeSet<u32> = periods

@@ -3,9 +3,9 @@
 use crate::assembler::{Assembler, TIM2, image};
 use crepitus_emulator::{Mcu, Stm32f405, Time};
 
-/// What tells in which register how often a handler ran.
+/// Register that counts the runs of a handler.
 const RUNS: u8 = 5;
-/// Not zero once the program went wrong.
+/// Register that is not zero once the program went wrong.
 const WRONG: u8 = 7;
 
 /// Goes round for ever; a condition that was wrong, or is forgotten, shows in `r7`.

@@ -14,7 +14,7 @@ const TABLE: u32 = FLASH + 0x400;
 const WORDS: usize = 32;
 const CORE_WORDS: usize = 15;
 
-/// Where the instructions begin that are compared.
+/// Start address of the instructions that are compared.
 const COMPARED: u32 = FLASH + 0x280;
 
 /// Their half words: enough for three to eight instructions.
@@ -75,7 +75,7 @@ fn chip(has_floats: bool) -> Stm32f405 {
     mcu
 }
 
-/// What a program starts with.
+/// Initial state of a program.
 #[derive(Debug)]
 struct Start {
     code: Vec<u16>,

@@ -11,7 +11,7 @@ const PREFETCH: u32 = 1 << 8;
 const INSTRUCTIONS: u32 = 1 << 9;
 const DATA: u32 = 1 << 10;
 
-/// Where the code that is timed begins, and what it reads as data: lines.
+/// Start addresses of the code that is timed, and of what it reads as data: lines.
 const CODE: u32 = 0x0800_1000;
 const TABLE: u32 = 0x0800_0800;
 

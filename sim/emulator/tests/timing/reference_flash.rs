@@ -3,7 +3,7 @@
 
 use crepitus_emulator::flash_interface::Kind;
 
-/// What the array does.
+/// Activity of the array.
 #[derive(Clone, Copy, Debug)]
 struct Job {
     /// The line that is read ahead and still wanted.
@@ -24,7 +24,7 @@ impl Lines {
         Self { lines, most }
     }
 
-    /// Whether it is there; it is the youngest then.
+    /// Returns whether it is there; it is the youngest then.
     fn find(&mut self, line: u32) -> bool {
         let Some(place) = self.lines.iter().position(|known| *known == line) else {
             return false;
@@ -58,7 +58,7 @@ pub(crate) struct ReferenceFlash {
 }
 
 impl ReferenceFlash {
-    /// With empty caches, as `FLASH_ACR` says.
+    /// Returns an interface with empty caches, as `FLASH_ACR` says.
     pub(crate) fn new(register: u32) -> Self {
         let has = |bit: u32| register >> bit & 1 == 1;
         Self {

@@ -75,7 +75,7 @@ struct Backlash {
     left: Box<dyn Chain>,
     half_rad: f64,
     right_kg_m2: f64,
-    /// Which way the rotor presses on the joint, if they touch.
+    /// Sense in which the rotor presses on the joint, if they touch.
     contact: Option<Sense>,
     gap_rad: f64,
     /// Velocity of a rotor on its own.
@@ -108,7 +108,7 @@ impl Backlash {
         }
     }
 
-    /// Where in the step an open gap closes, as a fraction of it.
+    /// Instant at which an open gap closes, as a fraction of the step.
     fn closes(&self, step: &Step, rotor: &Body, joint: &Body, joint_mean: f64) -> Option<f64> {
         let mean = self.rotor_mean_rad_s - joint_mean;
         let after = self.gap_rad + step.length_s * mean;

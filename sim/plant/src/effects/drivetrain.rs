@@ -90,7 +90,7 @@ struct Drivetrain {
     friction_nm: f64,
     load_loss: f64,
     mode: Mode,
-    /// Where in the step the last check saw the rotor stop.
+    /// Instant in the step at which the last check saw the rotor stop.
     found: Option<f64>,
     /// Friction torque of the last step; positive opposes growing angle.
     shown_nm: f64,

@@ -22,7 +22,7 @@
 //! | `firm` | 0.2 kg | 600 N/m | 20 N·s/m | estimate |
 //! | `whole-arm` | 0.5 kg | 3000 N/m | 60 N·s/m | estimate |
 //!
-//! Who lifts a leg knows its weight: if the scene has a `limb`, the hand adds
+//! A person who lifts a leg knows its weight: if the scene has a `limb`, the hand adds
 //! the torque that holds it at the intended angle, so the leg does not sag.
 
 mod grip;
@@ -140,7 +140,7 @@ struct Arm {
     lost_j: f64,
 }
 
-/// How a hand compensates the leg's weight.
+/// Compensation of the leg's weight by a hand.
 trait Lift: Send {
     /// Torque that holds the leg at an angle, N·m.
     fn torque_nm(&self, angle_rad: f64) -> f64;
@@ -150,7 +150,7 @@ trait Lift: Send {
     fn energy(&self, balance: &mut EnergyBalance);
 }
 
-/// Without a leg.
+/// Compensation without a leg.
 impl Lift for () {
     fn torque_nm(&self, _: f64) -> f64 {
         0.0

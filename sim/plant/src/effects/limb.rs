@@ -204,7 +204,7 @@ struct Limb<T> {
 }
 
 impl<T> Limb<T> {
-    /// With another torque.
+    /// Returns the limb with a further torque.
     fn and<U>(self, torque: U) -> Limb<(T, U)> {
         Limb {
             inertia_kg_m2: self.inertia_kg_m2,

@@ -56,7 +56,7 @@ pub(crate) const COLUMNS: [&str; 3] = ["motor_current_a", "motor_voltage_v", "mo
 
 const LOOP: &[ParameterSpec; 5] = CurrentLoopSettings::TABLE;
 
-/// What the loop is told, which is true of this winding, and what the joint
+/// Settings of the current loop, which are true of this winding, and what the joint
 /// gets of its current: the device's own torque constant and gear ratio.
 const TABLE: [ParameterSpec; 7] = [
     LOOP[0],
@@ -78,7 +78,7 @@ pub struct MotorNumbers {
 }
 
 impl MotorNumbers {
-    /// From the effect's parameters in a scene.
+    /// Numbers from the effect's parameters in a scene.
     pub fn of(given: &Given) -> Self {
         let [_, ohm, henry, supply_v, _, nm_per_a, gear] = numbers(given);
         Self {
@@ -96,7 +96,7 @@ struct Motor<F> {
     current_loop: CurrentLoop<F>,
     winding: Winding,
     half_tick_s: f64,
-    /// What half a tick leaves of a difference from the final current.
+    /// Share of a difference from the final current that is left after half a tick.
     half_left: f64,
     /// Time until the current is sampled, s; zero once it was.
     until_sample_s: f64,

@@ -186,9 +186,9 @@ struct ReactionMass {
     /// Absolute velocity of the mass along its way.
     velocity_m_s: f64,
     current_a: f64,
-    /// Where it has met a stop that it touches.
+    /// Excursion at which it has met a stop that it touches.
     contact_m: Option<f64>,
-    /// Of the last step.
+    /// Voltage applied to the coil, and force on the carrier, in the last step.
     volts: f64,
     force_n: f64,
     books: Books,

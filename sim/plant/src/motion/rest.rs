@@ -1,9 +1,9 @@
-//! What becomes of a motion that ends.
+//! Continuation of a motion beyond its end.
 
 use super::Motion;
 use crate::piece::{Curve, Piece};
 
-/// In this time a motion that ends comes to rest, s.
+/// Time in which a motion that ends comes to rest, s.
 pub const STOP_S: f64 = 0.1;
 
 impl Motion {

@@ -59,7 +59,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why a recording cannot be used.
+/// Reason why a recording cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[expect(
@@ -220,7 +220,7 @@ pub enum RecordingError {
         needed: usize,
         cutoff_hz: f64,
     },
-    /// Only samples that were not made by `read` can be so.
+    /// Invalid samples; only those that were not made by `read` can be so.
     #[error("sample {index} (from 0): {problem}")]
     BadSamples { index: usize, problem: &'static str },
     #[error("the smoothing spline failed: {reason}; please report it with the recording")]

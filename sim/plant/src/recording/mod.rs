@@ -50,7 +50,7 @@ pub const MAX_ROWS: usize = 20_000_000;
 /// The largest file that is read, in bytes.
 pub const MAX_BYTES: u64 = 2 << 30;
 
-/// Where the motion is in the file.
+/// Location of the motion in the file.
 #[derive(Debug, Clone, Copy)]
 pub struct Source<'a> {
     /// The file; `.mot` and `.sto` are read as OpenSim tables, everything else as CSV.

@@ -177,8 +177,8 @@ fn accelerations(time_s: &[f64], angle_rad: &[f64], period_s: f64) -> Vec<f64> {
     solve(&equations)
 }
 
-/// Where samples were averaged the first knot is after 0: what the last segment has beyond the
-/// period goes before the first.
+/// Moves the last segment's part beyond the period to before the first segment. Where samples were
+/// averaged, the first knot is after 0.
 fn begin_at_zero(segments: &mut Vec<CubicSegment>, period_s: f64) {
     let (Some(first), Some(last)) = (segments.first().copied(), segments.last_mut()) else {
         return;

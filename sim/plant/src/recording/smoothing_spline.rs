@@ -37,7 +37,7 @@ struct Row {
     q: [f64; 3],
     /// 1/w of the three.
     per_weight: [f64; 3],
-    /// Of R: on the diagonal, and right of it.
+    /// Entries of R: on the diagonal, and right of it.
     r: [f64; 2],
     /// Qᵀ y.
     second_difference: f64,
@@ -54,7 +54,7 @@ impl Row {
         }
     }
 
-    /// Of W⁻¹ Q.
+    /// Column of W⁻¹ Q.
     fn shares(&self) -> [f64; 3] {
         let ([q0, q1, q2], [v0, v1, v2]) = (self.q, self.per_weight);
         [q0 * v0, q1 * v1, q2 * v2]

@@ -1,4 +1,4 @@
-//! What both readers share: finding the two columns, and checking each row as it comes.
+//! Common part of both readers: finding the two columns, and checking each row as it comes.
 
 use super::{AngleUnit, MAX_ROWS, MIN_SAMPLES, Place, RecordingError, Samples, Source, Warning};
 

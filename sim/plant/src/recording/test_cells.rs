@@ -1,4 +1,4 @@
-//! What can be wrong with single cells and rows, and with the unit.
+//! Problems of single cells and rows, and of the unit.
 
 use super::test_read::{CSV, MOT, assert_refused, assert_warned, read_csv, read_mot, read_unit};
 use super::{AngleUnit, Source, Warning, read};

@@ -1,4 +1,4 @@
-//! What can be odd about a recording: for a person to judge, the motion is made all the same.
+//! Oddities of a recording: for a person to judge, the motion is made all the same.
 
 use super::{AngleUnit, Place};
 use std::fmt;

@@ -12,7 +12,7 @@ const HENRY: f64 = 2e-4;
 const LEVER_M: f64 = 0.3;
 const OMEGA: f64 = TAU * 35.0;
 
-/// What the flexure damps by itself.
+/// Damping of the flexure by itself.
 fn damping() -> f64 {
     let electric = CONSTANT * CONSTANT / (2.0 * OHM * MASS_KG * OMEGA);
     2.0 * (0.13 - electric) * MASS_KG * OMEGA

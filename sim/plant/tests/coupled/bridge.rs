@@ -10,7 +10,7 @@ const OHM: f64 = 1.23;
 const HENRY: f64 = 0.34e-3;
 const TAU_S: f64 = HENRY / OHM;
 const SUPPLY_V: f64 = 24.0;
-/// What open terminals hold against a current, V.
+/// Voltage that open terminals hold against a current, V.
 const AGAINST_V: f64 = SUPPLY_V + 2.0 * DIODE_V;
 /// Kt·N with the defaults, N·m/A.
 const CONSTANT: f64 = 0.0389 * 86.0;
@@ -32,8 +32,8 @@ fn after(from_a: f64, final_a: f64, seconds: f64) -> f64 {
     final_a + (from_a - final_a) * (-seconds / TAU_S).exp()
 }
 
-/// When an open bridge has used up a current: the time in s, and the charge
-/// until then in A·s. `emf_v` opposes the current.
+/// Time at which an open bridge has used up a current, s, and the charge
+/// until then, A·s. `emf_v` opposes the current.
 fn dies_away(from_a: f64, emf_v: f64) -> (f64, f64) {
     let final_a = (-AGAINST_V - emf_v) / OHM;
     let seconds = TAU_S * (1.0 - from_a / final_a).ln();
@@ -195,7 +195,7 @@ fn a_generator_brakes_a_free_rotor_to_the_edge() {
     }
 }
 
-/// What a bridge does in a step of a random run.
+/// Terminals of a bridge in a step of a random run.
 fn terminals(volt: f64, step: u32, every: u32) -> Terminals {
     if (step / every) % 3 == 1 {
         Terminals::Open
@@ -240,7 +240,7 @@ proptest! {
         prop_assert_eq!(rig.plant.balance(), image.plant.balance());
     }
 
-    /// Nobody drives: a current never comes from nothing.
+    /// Open bridge that nobody drives: a current never comes from nothing.
     #[test]
     fn an_open_bridge_takes_energy_only(case in case(false)) {
         let mut rig = case.rig_on_bridge(1.0);

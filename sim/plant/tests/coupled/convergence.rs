@@ -1,4 +1,4 @@
-//! What shorter steps change.
+//! Effect of shorter steps.
 
 use crate::support::{Build, Rig, TICK_S};
 use crepitus_plant::Motion;

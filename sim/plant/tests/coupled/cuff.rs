@@ -1,4 +1,4 @@
-//! What reaches the leg through the cuff.
+//! Transmission to the leg through the cuff.
 
 use crate::support::{Build, Complex, Harmonic, TICK_S, over, size};
 use crepitus_plant::Motion;

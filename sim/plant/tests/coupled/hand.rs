@@ -60,7 +60,7 @@ fn it_follows_an_intention_as_mass_spring_and_damper() {
     assert!(worst < 1e-8);
 }
 
-/// Where the leg's weight pulls, sitting, standing, prone and supine.
+/// Torque of the leg's weight, N·m: sitting, standing, prone and supine.
 fn weight_nm(posture: &str, knee_rad: f64) -> f64 {
     WEIGHT_NM
         * match posture {

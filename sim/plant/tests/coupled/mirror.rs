@@ -1,4 +1,4 @@
-//! Without a leg, whose weight knows up from down, a mirrored plant does the
+//! Mirror symmetry of a plant without a leg, whose weight knows up from down: a mirrored plant does the
 //! same to the last bit.
 
 use crate::random::case;

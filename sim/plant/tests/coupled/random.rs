@@ -206,7 +206,7 @@ fn hand() -> impl Strategy<Value = Numbers> {
     ])
 }
 
-/// Which effects there are, and their numbers.
+/// Any selection of effects, and their numbers.
 fn build(with_limb: bool) -> impl Strategy<Value = Build> {
     let gap = numbers([("gap_deg", decades(1e-3, 5.0))]);
     let choices = (0..4_usize, any::<bool>());

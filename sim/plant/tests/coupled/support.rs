@@ -100,7 +100,7 @@ impl Build {
         self
     }
 
-    /// Nobody holds the right end.
+    /// Releases the right end: nobody holds it.
     pub(crate) fn released(mut self) -> Self {
         self.released = true;
         self
@@ -127,7 +127,7 @@ impl Build {
         self.rig(plant, motion)
     }
 
-    /// With a bridge that the test switches, on the motor's winding.
+    /// [`Self::on`] with a bridge that the test switches, on the motor's winding.
     pub(crate) fn on_bridge(&self, motion: Motion) -> Rig<Bridge> {
         let context = self.context(&motion);
         let listed = self.listed.iter().find(|l| l.effect.name == "motor");
@@ -165,7 +165,7 @@ impl Build {
         }
     }
 
-    /// On a motion that rests at 0.
+    /// Returns the rig on a motion that rests at 0.
     pub(crate) fn at_rest(&self) -> Rig {
         self.on(Motion::rest(0.0))
     }
@@ -336,7 +336,7 @@ pub(crate) fn size((re, im): Complex) -> f64 {
     re.hypot(im)
 }
 
-/// What a signal has of a sine, by least squares over whatever was added.
+/// Sine component of a signal, by least squares over all that was added.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Harmonic {
     ss: f64,
@@ -367,7 +367,7 @@ impl Harmonic {
     }
 }
 
-/// Where `f` changes sign between `low` and `high`.
+/// Point between `low` and `high` at which `f` changes sign.
 pub(crate) fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let rising = f(high) > 0.0;
     assert!((f(low) > 0.0) != rising, "no root between {low} and {high}");

@@ -165,7 +165,7 @@ impl TurnsBack {
     }
 }
 
-/// Which samples are lost.
+/// Samples that are lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Losses {
     /// Each by itself, with this probability.

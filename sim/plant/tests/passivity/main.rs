@@ -42,7 +42,7 @@ const fn numbers(inertia: f64, stiffness: f64, kinetic: f64, static_: f64) -> Pa
     }
 }
 
-/// What a device can be: all but the last two are a sensor or a motor that
+/// Possible devices: all but the last two are a sensor or a motor that
 /// there is not.
 const RIGS: [(Sight, Acts); 7] = [
     (Sight::True, Acts::Late(0)),

@@ -25,12 +25,12 @@ pub(crate) enum Sight {
     Counts,
 }
 
-/// How the torque acts.
+/// Way in which the torque acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Acts {
-    /// So many ticks late, all of it.
+    /// All of it late by this number of ticks.
     Late(usize),
-    /// Through the effect `motor`.
+    /// Torque through the effect `motor`.
     Motor,
 }
 
@@ -106,7 +106,7 @@ pub(crate) struct Rig {
     sight: Sight,
     motors: Option<Motors>,
     observer: EnergyObserver<f64>,
-    /// With the terms of lost samples left out.
+    /// Observer with the terms of lost samples left out.
     ungranted: EnergyObserver<f64>,
     angle_rad: f64,
     seen_rad: f64,

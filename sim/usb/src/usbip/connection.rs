@@ -9,10 +9,10 @@ use rustix::net::sockopt::{
     set_socket_keepalive, set_tcp_keepcnt, set_tcp_keepidle, set_tcp_keepintvl,
 };
 
-/// What a client has not read yet: above this, nothing more is done for it, bytes.
+/// Limit of what a client has not read yet, bytes: above it, nothing more is done for the client.
 const OUTGOING_LIMIT: usize = 256 * 1024;
 
-/// How much one call reads, bytes.
+/// Largest amount that one call reads, bytes.
 const CHUNK: usize = 16 * 1024;
 
 /// A client whose machine has vanished is noticed after this long without an answer, and then this
@@ -80,7 +80,7 @@ impl Connection {
         self.used = (self.used + count).min(self.incoming.len());
     }
 
-    /// Whether the client reads what it is sent. If not, the rest has to wait.
+    /// Returns whether the client reads what it is sent. If not, the rest has to wait.
     pub(crate) fn has_room(&self) -> bool {
         self.outgoing.len() < OUTGOING_LIMIT
     }

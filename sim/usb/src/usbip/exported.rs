@@ -1,4 +1,4 @@
-//! What the device says of itself, as the protocol tells it to clients.
+//! Description of the device by itself, as the protocol presents it to clients.
 
 use super::messages::DeviceRecord;
 use crate::enumeration::{AddressedDevice, EnumerationError};
@@ -7,7 +7,7 @@ use crate::wire::UsbWire;
 /// The device's name in requests: port 1 of bus 1.
 pub(crate) const BUS_ID: &str = "1-1";
 
-/// Where the device is on the server, for people.
+/// Path of the device on the server, for people.
 const PATH: &str = "/crepitus/1-1";
 
 /// The number of the bus.

@@ -30,13 +30,13 @@ const MOST_GUESTS: usize = 8;
 /// Frames that such a client has to send its request and to read the reply: 5 s of device time.
 const GUEST_FRAMES: u32 = 5_000;
 
-/// What a client's request before an import needs, bytes.
+/// Largest size of a client's request before an import, bytes.
 const OPERATION_LIMIT: usize = 8 + BUS_ID_LENGTH;
 
-/// What one command needs, bytes.
+/// Largest size of one command, bytes.
 const COMMAND_LIMIT: usize = HEADER_LENGTH + MAX_TRANSFER;
 
-/// Why a connection ended, or a request was refused.
+/// Reason why a connection ended, or a request was refused.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Cause {
@@ -86,7 +86,7 @@ impl From<io::Error> for Cause {
     }
 }
 
-/// What has happened, for a log.
+/// Event at the server, for a log.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Event {
@@ -99,14 +99,14 @@ pub enum Event {
     Released {
         /// Its address.
         client: SocketAddr,
-        /// Why.
+        /// Cause of the release.
         cause: Cause,
     },
     /// A client did not get what it asked for.
     Refused {
         /// Its address.
         client: SocketAddr,
-        /// Why.
+        /// Cause of the refusal.
         cause: Cause,
     },
 }
@@ -137,7 +137,7 @@ pub struct Server {
     events: Vec<Event>,
 }
 
-/// What comes of a client without the device.
+/// Fate of a client without the device.
 enum Fate {
     Waits,
     Leaves,

@@ -157,8 +157,8 @@ impl Urbs {
         }
     }
 
-    /// At most one transaction for each endpoint, as far as the frame's time goes. Let the device run
-    /// between two calls.
+    /// Performs at most one transaction for each endpoint, as far as the frame's time goes. Let the device
+    /// run between two calls.
     pub(crate) fn poll<W: UsbWire>(&mut self, wire: &mut W) {
         let Self {
             control,

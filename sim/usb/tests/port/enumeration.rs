@@ -1,4 +1,4 @@
-//! What a host learns about the device, and what it may not ask.
+//! Information that a host obtains about the device, and requests that it may not make.
 
 use crate::rig::{Device, Echo, IDENTITY, with_device, with_host};
 use crepitus_device::usb_port::{PRODUCT_ID, UsbIdentity, UsbPort, UsbPortError, VENDOR_ID};

@@ -35,7 +35,7 @@ pub(crate) fn with_device<E: HostBytes>(end: E, test: impl FnOnce(Device<'_, E>,
     test(Device { port, end }, cable);
 }
 
-/// As [`with_device`], with the device enumerated.
+/// Runs a test as [`with_device`] does, with the device enumerated.
 pub(crate) fn with_host<E: HostBytes>(
     end: E,
     test: impl FnOnce(Device<'_, E>, SoftCable, CdcHost),

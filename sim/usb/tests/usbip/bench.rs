@@ -17,7 +17,7 @@ pub(crate) const BULK_OUT: u32 = 1;
 pub(crate) const BULK_IN: u32 = 2;
 pub(crate) const NOTIFICATIONS: u32 = 1;
 
-/// How long anything may take that a computer under load does late.
+/// Longest duration of anything that a computer under load does late.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A transaction that the device acknowledged or stalled.
@@ -262,7 +262,7 @@ impl<E: HostBytes> Bench<'_, E> {
         client
     }
 
-    /// What the last event says.
+    /// Text of the last event.
     pub(crate) fn last_event(&self) -> String {
         match self.events.last() {
             Some(Event::Refused { cause, .. }) => format!("refused: {cause}"),

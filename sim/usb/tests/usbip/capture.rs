@@ -7,7 +7,7 @@ use std::env;
 use std::fs;
 use std::process::Command;
 
-/// Whether tshark is there; if not, a line about it.
+/// Returns whether tshark is there; if not, a line about it.
 ///
 /// # Panics
 /// If it is not although `CREPITUS_NEEDS_TSHARK` is set.
@@ -67,7 +67,7 @@ fn pcap(chunks: &[Chunk]) -> Vec<u8> {
     file
 }
 
-/// What tshark says of a session.
+/// Output of tshark for a session.
 fn dissect(chunks: &[Chunk], arguments: &[&str]) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("session.pcap");

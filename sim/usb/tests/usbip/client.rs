@@ -1,5 +1,5 @@
 //! A small USB/IP client for tests, which shares nothing with the server: its own encoding, from the
-//! protocol's description. It does not block; whoever owns it decides when bytes move.
+//! protocol's description. It does not block; its owner decides when bytes move.
 
 use std::collections::BTreeSet;
 use std::io::{ErrorKind, Read, Write};

@@ -15,7 +15,7 @@ fn halt(request: u8) -> [u8; 8] {
     setup(0x02, request, 0, 0x82, 0)
 }
 
-/// Of packets to the device: their lengths.
+/// Returns the lengths of the packets to the device.
 fn lengths_out(seen: &[Seen]) -> Vec<usize> {
     let length = |seen: &Seen| match seen {
         Seen::Out(1, data) => Some(data.len()),

@@ -269,7 +269,7 @@ pub(super) fn current_offset() -> Vec<Case> {
     ]
 }
 
-/// What the comparator sees, or the program in two ticks.
+/// Overcurrents that the comparator sees, or the program in two ticks.
 pub(super) fn overcurrent() -> Vec<Case> {
     vec![
         case(

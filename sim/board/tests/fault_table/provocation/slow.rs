@@ -84,7 +84,7 @@ pub(super) fn joint_mismatch() -> Vec<Case> {
     ]
 }
 
-/// Where 3.2 N·m may last.
+/// Overloads where 3.2 N·m may last.
 pub(super) fn overload() -> Vec<Case> {
     let of = |name, values| Case {
         values,

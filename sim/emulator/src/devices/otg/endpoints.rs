@@ -10,7 +10,7 @@ const CNAK: u32 = 1 << 26;
 const SNAK: u32 = 1 << 27;
 const EPDIS: u32 = 1 << 30;
 const EPENA: u32 = 1 << 31;
-/// What is kept of a write: size, activity, type, stall, FIFO.
+/// Bits that are kept of a write: size, activity, type, stall, FIFO.
 const STORED: u32 = MPSIZ | USBAEP | 3 << 18 | 1 << 20 | STALL | 15 << 22;
 
 /// DIEPINT, DOEPINT.
@@ -102,7 +102,7 @@ impl Endpoint {
         self.control & STALL != 0
     }
 
-    /// Whether the program has it enabled, and wants no NAK.
+    /// Returns whether the program has it enabled, and wants no NAK.
     pub(super) fn is_ready(&self) -> bool {
         self.control & (EPENA | NAKSTS) == EPENA
     }

@@ -23,7 +23,7 @@ struct Entry {
     words: VecDeque<u32>,
 }
 
-/// What has been received, in order.
+/// FIFO of received entries, in order.
 #[derive(Debug, Default)]
 pub(super) struct ReceiveFifo {
     /// GRXFSIZ, words.
@@ -61,7 +61,7 @@ impl ReceiveFifo {
         self.current.clear();
     }
 
-    /// Whether there is room for a packet of this many bytes, with its status and
+    /// Returns whether there is room for a packet of this many bytes, with its status and
     /// that of its completion.
     pub(super) fn has_room_for(&self, bytes: usize) -> bool {
         let words = |entry: &Entry| 1 + entry.words.len();
@@ -83,7 +83,7 @@ impl ReceiveFifo {
     }
 }
 
-/// What is to be transmitted.
+/// FIFOs of data to be transmitted.
 #[derive(Debug, Default)]
 pub(super) struct TransmitFifos {
     /// DIEPTXF0 to DIEPTXF3: start, and depth in words above.
@@ -121,7 +121,7 @@ impl TransmitFifos {
         }
     }
 
-    /// Whether a program has written more than there was room for.
+    /// Returns whether a program has written more than there was room for.
     pub(super) fn is_too_full(&self) -> bool {
         self.is_too_full
     }

@@ -9,7 +9,7 @@ const RESET: Time = Time::from_us(5_000);
 /// An idle bus is a suspend after this time (USB 2.0, 7.1.7.6).
 const IDLE: Time = Time::from_us(3_000);
 
-/// What happens on the cable by itself.
+/// Event that occurs on the cable by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Event {
     /// A bus reset has ended, and the speed is known.
@@ -52,7 +52,7 @@ impl Line {
         self.is_suspended
     }
 
-    /// Whether frames come.
+    /// Returns whether frames come.
     pub(super) fn is_alive(&self) -> bool {
         self.is_plugged && !self.is_idle && self.reset_ends.is_none()
     }

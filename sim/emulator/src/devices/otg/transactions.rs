@@ -7,7 +7,7 @@ use crate::chip::part::lock;
 use crepitus_usb::wire::{Handshake, Packet, Token, UsbWire};
 
 impl Otg {
-    /// Whether a hub reports a device.
+    /// Returns whether a hub reports a device.
     pub(crate) fn is_connected(&self) -> bool {
         lock(&self.line).is_plugged && self.is_on_the_bus(&lock(&self.state))
     }

@@ -147,7 +147,7 @@ impl Executor<'_> {
         self.may(pc, width, Access::Fetch).then_some(())
     }
 
-    /// Whether the MPU permits an access. The first and the last byte decide.
+    /// Returns whether the MPU permits an access. The first and the last byte decide.
     #[inline]
     fn may(&mut self, address: u32, bytes: u32, access: Access) -> bool {
         let (core, is_privileged) = (self.core, self.is_privileged);
@@ -156,7 +156,7 @@ impl Executor<'_> {
         permits(address) && (is_one_piece(address, last) || permits(last))
     }
 
-    /// Whether an access of this alignment is one without a fault.
+    /// Returns whether an access of this alignment is one without a fault.
     fn is_aligned(&self, address: u32, bytes: u32, is_always: bool) -> bool {
         address.is_multiple_of(bytes) || !is_always && self.ccr & ccr::UNALIGN_TRP == 0
     }

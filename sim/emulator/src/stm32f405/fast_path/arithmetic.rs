@@ -2,7 +2,7 @@
 
 use rsemu::cpu::arm::v7m::isa::{ShiftType, Size};
 
-/// From here on an address that is branched to is a return from an exception.
+/// First of the addresses that are, when branched to, a return from an exception.
 const EXCEPTION_RETURNS: u32 = 0xf000_0000;
 
 pub(super) fn it_state(xpsr: u32) -> u8 {
@@ -10,7 +10,7 @@ pub(super) fn it_state(xpsr: u32) -> u8 {
     high & 0xfc | top >> 1 & 3
 }
 
-/// Whether a value that is branched to is an address of code, and neither a return
+/// Returns whether a value that is branched to is an address of code, and neither a return
 /// from an exception nor a fault.
 pub(super) fn is_jump(address: u32) -> bool {
     address & 1 == 1 && address < EXCEPTION_RETURNS

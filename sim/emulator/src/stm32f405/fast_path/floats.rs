@@ -22,7 +22,7 @@ const LIST: usize = 32;
 /// `FPSCR` in `vmrs` and `vmsr`.
 const FPSCR: u8 = 1;
 
-/// Whether the fast path has an instruction.
+/// Returns whether the fast path has an instruction.
 pub(super) fn is_plain(instruction: &FpInsn) -> bool {
     match *instruction {
         FpInsn::CvtHalf { .. } | FpInsn::CvtFixed { .. } => false,

@@ -19,7 +19,7 @@ use rsemu::cpu::arm::v7m::{ArmV7m, xpsr};
 /// Cycles of a branch that is taken, besides the instruction's one.
 const REFILL: u64 = 2;
 
-/// Whether the fast path has an instruction. That it can be executed there is
+/// Returns whether the fast path has an instruction. That it can be executed there is
 /// decided when it is.
 pub(super) fn is_plain(instruction: &Insn) -> bool {
     match instruction {

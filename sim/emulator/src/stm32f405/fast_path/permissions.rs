@@ -1,4 +1,4 @@
-//! What the MPU permits, as the library has answered it before.
+//! Permissions of the MPU, as the library has answered them before.
 
 use rsemu::cpu::arm::v7m::ArmV7m;
 use rsemu::cpu::arm::v7m::sys::{Access, Sys};
@@ -49,7 +49,7 @@ impl Default for Permissions {
     }
 }
 
-/// Whether two addresses always have the same permissions.
+/// Returns whether two addresses always have the same permissions.
 pub(super) fn is_one_piece(a: u32, b: u32) -> bool {
     a >> PIECE_BITS == b >> PIECE_BITS
 }
@@ -69,7 +69,7 @@ impl Permissions {
         }
     }
 
-    /// Whether the access is permitted, at priorities that are not negative.
+    /// Returns whether the access is permitted, at priorities that are not negative.
     #[inline]
     pub(super) fn permits(
         &mut self,

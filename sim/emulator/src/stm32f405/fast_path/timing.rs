@@ -6,7 +6,7 @@ use crate::image::{FLASH, FLASH_BYTES};
 /// The most words that an instruction reads.
 const MOST: usize = 32;
 
-/// What the flash interface is asked for, when the instruction is certain.
+/// Requests to the flash interface, made when the instruction is certain.
 pub(super) struct Timing<'a> {
     /// None: flash never makes the core wait.
     waits: Option<&'a Waits>,

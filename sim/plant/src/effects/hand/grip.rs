@@ -23,7 +23,7 @@ pub(super) struct Palm {
 }
 
 impl Palm {
-    /// Of a grip, by its number, at this lever; none for the arm alone.
+    /// Palm of a grip, by its number, at this lever; none for the arm alone.
     /// Its numbers are `factor` times those of the table.
     pub(super) fn of(grip: u8, lever_m: f64, factor: f64) -> Option<Self> {
         let (kg, n_per_m, ns_per_m) = match grip {

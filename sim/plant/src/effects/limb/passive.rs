@@ -13,10 +13,10 @@ pub struct Passive {
 impl Passive {
     /// Riener's and Edrich's constant term, N·m.
     const CONSTANT_NM: f64 = -4.820;
-    /// Where it ends, deg.
+    /// Ends of its range, deg.
     pub(super) const RANGE_DEG: (f64, f64) = (-20.0, 160.0);
 
-    /// For a hip bent by so much, and the ankle at 0°.
+    /// The passive moment for a hip bent by `hip_deg`, and the ankle at 0°.
     pub fn for_hip_deg(hip_deg: f64) -> Self {
         Self {
             terms: [

@@ -42,14 +42,14 @@ pub enum Terminals {
     Open,
 }
 
-/// How the current flows.
+/// Mode in which the current flows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mode {
-    /// Through switches, at this voltage.
+    /// Current through switches, at this voltage.
     Driven(f64),
-    /// Through diodes, in this sense.
+    /// Current through diodes, in this sense.
     Diodes(Sense),
-    /// Not at all.
+    /// No current.
     Blocked,
 }
 
@@ -63,7 +63,7 @@ pub struct Bridge {
     /// A contact in the motor's line is open: no current at all.
     line_is_open: bool,
     mode: Mode,
-    /// In this step the diodes were found not to begin to conduct: at the edge
+    /// The diodes were found not to begin to conduct in this step: at the edge
     /// they would switch endlessly.
     refused: bool,
     charge_c: f64,
@@ -135,7 +135,7 @@ impl Bridge {
         self.supply_v
     }
 
-    /// What a current of this sense meets: the supply's voltage, and diodes, V.
+    /// Voltages against a current of this sense: the supply's, and that of diodes, V.
     fn against_v(&self, sense: Sense) -> (f64, f64) {
         match self.shorted {
             None => (self.supply_v, 2.0 * DIODE_V),

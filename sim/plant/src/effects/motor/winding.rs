@@ -52,7 +52,7 @@ struct Transient {
 pub struct Course {
     /// Final value, A.
     pub final_a: f64,
-    /// How far from that it begins, A.
+    /// Difference from the final value at the start, A.
     pub from_a: f64,
 }
 

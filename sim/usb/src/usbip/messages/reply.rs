@@ -1,4 +1,4 @@
-//! What the server sends.
+//! Messages of the server.
 
 use super::{BUS_ID_LENGTH, HEADER_LENGTH, VERSION};
 
@@ -13,7 +13,7 @@ const OP_REP_IMPORT: u16 = 0x0003;
 const RET_SUBMIT: u32 = 3;
 const RET_UNLINK: u32 = 4;
 
-/// Why a request before an import is refused, in its reply.
+/// Reason why a request before an import is refused, in its reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Refusal {
@@ -28,7 +28,7 @@ pub enum Refusal {
 /// A device as a client sees it before it imports it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeviceRecord {
-    /// Where the device is on the server, for people: at most 255 bytes.
+    /// Path of the device on the server, for people: at most 255 bytes.
     pub path: &'static str,
     /// Its name in requests: at most 31 bytes.
     pub bus_id: &'static str,
@@ -111,14 +111,14 @@ pub fn import_reply(answer: Result<&DeviceRecord, Refusal>) -> Vec<u8> {
     }
 }
 
-/// How a transfer ended.
+/// Result of a transfer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Completion {
     /// The number of the transfer.
     pub sequence: u32,
     /// 0, or the negative number of a Linux error.
     pub status: i32,
-    /// How many bytes were moved.
+    /// Number of bytes transferred.
     pub moved: usize,
     /// The number of packets as the client gave it.
     pub packets: u32,

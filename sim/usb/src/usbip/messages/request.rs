@@ -1,4 +1,4 @@
-//! What a client sends. Any bytes are a request, the beginning of one, or a [`MessageError`].
+//! Messages of a client. Any bytes are a request, the beginning of one, or a [`MessageError`].
 //!
 //! Decoding takes no memory but for the data of a transfer, at most [`MAX_TRANSFER`] bytes.
 //! `Ok(None)` means that more bytes have to come.
@@ -76,7 +76,7 @@ pub enum MessageError {
     },
 }
 
-/// What a client asks for before it has a device.
+/// Request of a client that does not have a device yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
     /// The devices that can be imported.
@@ -154,7 +154,7 @@ pub struct Submit {
     pub data: Vec<u8>,
 }
 
-/// What a client sends once it has a device.
+/// Command of a client that has a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Command {
     /// Do a transfer.

@@ -12,7 +12,7 @@ const SET_ADDRESS: [u8; 2] = [0x00, 0x05];
 /// The direction in `bmRequestType`.
 const FROM_DEVICE: u8 = 0x80;
 
-/// Where a control transfer is.
+/// Stage of a control transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     Setup,
@@ -30,7 +30,7 @@ pub(super) struct ControlTransfers {
     token: Token,
     max_packet: usize,
     queue: VecDeque<Urb>,
-    /// Of the first one in the queue.
+    /// Stage of the first transfer in the queue.
     stage: Stage,
 }
 
@@ -78,7 +78,7 @@ impl ControlTransfers {
         self.queue.remove(position).is_some()
     }
 
-    /// At most one transaction; the transfer that ends with it.
+    /// Performs at most one transaction; returns the transfer that ends with it.
     pub(super) fn poll<W: UsbWire>(
         &mut self,
         wire: &mut W,
@@ -146,8 +146,8 @@ fn next_stage(stage: Stage, urb: &Urb, is_short: bool) -> Option<Stage> {
     }
 }
 
-/// Whether the SETUP packet says the same as the rest of the URB: the length of the data and, if there
-/// is any, its direction.
+/// Returns whether the SETUP packet says the same as the rest of the URB: the length of the data and, if
+/// there is any, its direction.
 fn is_consistent(submit: &Submit) -> bool {
     let [request_type, _, _, _, _, _, low, high] = submit.setup;
     let length = usize::from(u16::from_le_bytes([low, high]));

@@ -34,7 +34,7 @@ impl Pipe {
         }
     }
 
-    /// Whether this is the endpoint of this address, with its direction in bit 7.
+    /// Returns whether this is the endpoint of this address, with its direction in bit 7.
     pub(super) fn is(&self, address: u8) -> bool {
         self.endpoint.number() == address & 0x0f && self.endpoint.is_in() == (address & 0x80 != 0)
     }
@@ -59,7 +59,7 @@ impl Pipe {
         self.is_due = frame.is_multiple_of(u64::from(self.endpoint.interval.max(1)));
     }
 
-    /// At most one transaction; the URB that ends with it.
+    /// Performs at most one transaction; returns the URB that ends with it.
     pub(super) fn poll<W: UsbWire>(
         &mut self,
         wire: &mut W,
