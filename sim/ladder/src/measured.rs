@@ -150,7 +150,7 @@ pub struct Effect<E> {
 }
 
 impl<E: DeviceEffect<f32>> Effect<E> {
-    /// At rest so many counts from where the joint is straight.
+    /// Returns the effect at rest, so many counts from where the joint is straight.
     pub fn new(mut law: E, count: i32, scale: Scale<f32>) -> Self {
         let place = Position::at(count);
         law.rest(&place);

@@ -19,7 +19,7 @@ pub struct Plan {
     pub step_s: f64,
     /// The shaft's velocity at the start, rad/s.
     pub omega_rad_s: f32,
-    /// Where an effect finds the joint at the start, in counts of the encoder.
+    /// Position at which an effect finds the joint at the start, in counts of the encoder.
     pub place: i32,
     /// Steps of one command.
     pub steps: u32,

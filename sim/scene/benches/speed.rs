@@ -1,4 +1,4 @@
-//! How much faster than real time a scene runs at the device's 20 kHz, on one
+//! Speed of a scene relative to real time at the device's 20 kHz, on one
 //! core and without a trace.
 //!
 //! `cargo bench -p crepitus-scene` counts simulated seconds as items: read
@@ -78,7 +78,7 @@ fn without_effects(bencher: Bencher) {
     bench(bencher, &scene(CONSTANT, "exact", "f64", ""));
 }
 
-/// From event to event, without a step: ten seconds at 1 rad/s, 637 events.
+/// Advances the reference from event to event, without a step: ten seconds at 1 rad/s, 637 events.
 #[divan::bench(args = ["frozen", "physical"])]
 fn reference_events_only(bencher: Bencher, convention: &str) {
     let effects = format!("[effects.crepitus]\nconvention = \"{convention}\"");

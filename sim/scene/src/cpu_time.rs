@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-/// Which clock the costs of this build come from.
+/// Name of the clock that the costs of this build come from.
 pub const CLOCK: &str = if cfg!(any(target_os = "linux", target_os = "macos")) {
     "CPU time of the thread"
 } else {
@@ -36,7 +36,7 @@ pub fn since(begun: Duration) -> Duration {
     now().saturating_sub(begun)
 }
 
-/// What one measurement with this clock adds to the time it measures: the
+/// Time that one measurement with this clock adds to the time it measures: the
 /// least of 100 differences of two readings. To be taken off where thousands
 /// of short measurements are added up.
 pub fn reading_cost() -> Duration {

@@ -23,7 +23,7 @@ pub(crate) struct Node {
     pub(crate) value: Value,
 }
 
-/// What TOML can hold, as far as scenes use it.
+/// Values that TOML can hold, as far as scenes use them.
 #[derive(Clone, Debug)]
 pub(crate) enum Value {
     Text(String),

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-/// Where something in a scene comes from.
+/// Origin of something in a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// A line of the scene file, counted from 1.
@@ -18,12 +18,12 @@ pub enum Origin {
 pub struct SceneError {
     /// The scene file.
     pub file: PathBuf,
-    /// Where in it, if at one place.
+    /// Origin of the error, if it is at one place.
     pub origin: Option<Origin>,
     /// The key with its path, such as `solver.step_s`; empty for the whole
     /// file.
     pub key: String,
-    /// What is wrong, and the valid values.
+    /// Cause of the error, and the valid values.
     pub message: String,
 }
 

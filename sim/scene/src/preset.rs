@@ -62,11 +62,11 @@ pub struct Preset {
     pub severity: Option<String>,
     /// Severity on the scale that all disorders share.
     pub level: Option<Level>,
-    /// What to feel for.
+    /// Sensation to feel for.
     pub feel: Option<String>,
-    /// How well founded the whole is.
+    /// Strength of the evidence for the whole.
     pub evidence: Option<Evidence>,
-    /// Where the numbers are from.
+    /// Source of the numbers.
     pub source: Option<String>,
     /// The stick-slip object, if it is one of its effects.
     pub crepitus: Option<Crepitus>,
@@ -83,7 +83,7 @@ pub struct PresetValue {
     pub effect: &'static str,
     /// The parameter or choice.
     pub key: &'static str,
-    /// What it is.
+    /// The value itself.
     pub setting: Setting,
     /// Origin, if the file says it.
     pub evidence: Option<Evidence>,
@@ -178,7 +178,7 @@ impl Preset {
             .chain(self.listed.iter().map(|l| l.effect))
     }
 
-    /// Whether it has an effect.
+    /// Returns whether it has an effect.
     pub fn has(&self, effect: &str) -> bool {
         self.effects().any(|e| e.name == effect)
     }
@@ -336,7 +336,7 @@ impl Preset {
     }
 }
 
-/// What a file holds: a scene, which has a `version`, or a preset.
+/// Content of a file: a scene, which has a `version`, or a preset.
 #[derive(Clone, Debug)]
 pub enum Knee {
     /// A scene.
@@ -370,7 +370,7 @@ impl Knee {
     }
 }
 
-/// Whether an effect renders a disorder.
+/// Returns whether an effect renders a disorder.
 pub fn is_disorder(effect: &Effect) -> bool {
     let mut symptoms = SPECS.iter().zip(IS_SYMPTOM);
     matches!(effect.part, Part::Joint)

@@ -38,11 +38,11 @@ use repeat::Repeat;
 use std::ops::ControlFlow;
 use swing::Swing;
 
-/// How many roundings of what a torque is made of count as at a limit. The
+/// Number of roundings of a torque's terms within which it counts as at a limit. The
 /// stepping solvers allow 1e-9 of the limit, as their errors add up.
 const LIMIT_ROUNDINGS: f64 = 64.0;
 
-/// How many turns of the loop over pieces and events go by between two polls.
+/// Number of turns of the loop over pieces and events between two polls.
 const POLL_EVERY: u32 = 1 << 10;
 
 /// The stick-slip object on the true motion of the shaft.
@@ -57,7 +57,7 @@ pub struct Reference<'a> {
     natural_rad_s: f64,
     impedance: f64,
     piece: Piece,
-    /// Where the motion has it.
+    /// Its place in the motion.
     piece_place: usize,
     time_s: f64,
     /// The shaft now; just after a knot, at it.
@@ -90,9 +90,9 @@ enum State {
 #[derive(Clone, Copy, Debug)]
 struct Slip {
     sense: Sense,
-    /// When it began, s.
+    /// Time of its beginning, s.
     start_s: f64,
-    /// When it ends, s: known for `frozen`, infinite for the others.
+    /// Time of its end, s: known for `frozen`, infinite for the others.
     end_s: f64,
     /// θ − s·Tk/kr when it began, rad.
     x: f64,
@@ -137,7 +137,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// As [`Self::advance`], for a follower that may end the run early; what
+    /// Advances as [`Self::advance`] does, for a follower that may end the run early; what
     /// it ends at is no whole event then.
     ///
     /// # Errors
@@ -273,7 +273,7 @@ impl<'a> Reference<'a> {
         p.inertia_kg_m2 * shaft.omega_dot + p.damping_nms_per_rad * shaft.omega_rad_s
     }
 
-    /// By how much rounding can move a stick's torque, N·m: of the swing that
+    /// Rounding error that a stick's torque can have, N·m: of the swing that
     /// leads to it, of the angle, and of the time.
     fn limit_slack_nm(&self, shaft: &ShaftState) -> f64 {
         let p = &self.settings.parameters;

@@ -74,7 +74,7 @@ impl Observer for Blind {
     const WANTS_ROWS: bool = false;
 }
 
-/// Why a run ended early.
+/// Reason for the early end of a run.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError<E> {
@@ -173,12 +173,12 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
     columns
 }
 
-/// How many steps a scene has; of `reference`, rows.
+/// Number of steps of a scene; of `reference`, of rows.
 pub fn step_count(scene: &Scene) -> u64 {
     steps(scene).0
 }
 
-/// How many rows the trace of a scene has.
+/// Number of rows in the trace of a scene.
 pub fn rows(scene: &Scene) -> u64 {
     let (steps, every) = steps(scene);
     steps / every + 1

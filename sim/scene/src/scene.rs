@@ -47,12 +47,12 @@ pub struct Scene {
     pub motion_kind: MotionKind,
     /// The shaft's motion.
     pub motion: Motion,
-    /// On a simulated device the leg begins straight, at 0°, where the zero is set, and is led to the
+    /// Whether on a simulated device the leg begins straight, at 0°, where the zero is set, and is led to the
     /// motion's start. No key of a file, and nothing to a run.
     pub begins_straight: bool,
     /// Seed of everything random, if the scene has any.
     pub seed: Option<u64>,
-    /// How the joint is integrated.
+    /// Solver that integrates the joint.
     pub solver: SolverChoice,
     /// The drive's whole pipeline renders, not the solver alone.
     pub is_device: bool,
@@ -248,7 +248,7 @@ impl Scene {
         }
     }
 
-    /// How the motion begins.
+    /// State of the shaft at the start of the motion.
     pub fn start(&self) -> Body {
         crate::walk::body(&self.motion.piece(0.0), 0.0)
     }
@@ -267,13 +267,13 @@ impl Scene {
             .map_or_else(|| Given::defaults(effect), |l| l.given.clone())
     }
 
-    /// Whether it has a plant or a device, so that the shaft does what comes of
+    /// Returns whether it has a plant or a device, so that the shaft does what comes of
     /// it; otherwise the motion prescribes it.
     pub fn is_coupled(&self) -> bool {
         self.is_device || (self.solver != SolverChoice::Reference && !self.listed.is_empty())
     }
 
-    /// Whether the motion, or a hand after it, holds the leg.
+    /// Returns whether the motion, or a hand after it, holds the leg.
     pub fn is_held(&self) -> bool {
         self.motion_kind != MotionKind::Released
     }

@@ -94,7 +94,7 @@ impl Shipped {
         Self::find(path).filter(|_| !path.is_file())
     }
 
-    /// Where the file stands in the repository.
+    /// Path of the file in the repository.
     pub fn file(&self) -> PathBuf {
         PathBuf::from(format!("scenes/{}.toml", self.name))
     }
@@ -102,13 +102,13 @@ impl Shipped {
     /// The scene, read.
     ///
     /// # Errors
-    /// What the overrides make wrong.
+    /// The error that the overrides cause.
     pub fn read(&self, overrides: &Overrides) -> Result<Scene, SceneError> {
         Scene::parse(&self.file(), self.text, overrides)
     }
 }
 
-/// Where a scene comes from, not yet read.
+/// Source of a scene that is not yet read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
     /// The file that errors name, and from which the path of a recording is relative.
@@ -123,15 +123,15 @@ pub struct Source {
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Repeated {
     summary: PathBuf,
-    /// Of the recording that it was given.
+    /// SHA-256 of the recording that it was given.
     data_sha256: Option<String>,
-    /// Of the program.
+    /// Version of the program.
     version: Option<String>,
     commit: Option<String>,
 }
 
 impl Source {
-    /// What an argument names: a file, a scene that ships, or the summary of a run,
+    /// Finds what an argument names: a file, a scene that ships, or the summary of a run,
     /// which is repeated.
     ///
     /// # Errors
@@ -194,7 +194,7 @@ impl Source {
         })
     }
 
-    /// Of a run that is repeated, the commit of the program that it was of.
+    /// Commit of the program that the repeated run was of.
     pub fn commit(&self) -> Option<&str> {
         self.repeated.as_ref()?.commit.as_deref()
     }

@@ -13,11 +13,11 @@ pub use crepitus_model::render::effects::symptom::Word;
 pub struct Column {
     /// The name in the header of `trace.csv`; its unit is part of the name.
     pub name: &'static str,
-    /// How its numbers are written.
+    /// Format of its numbers.
     pub kind: ColumnKind,
 }
 
-/// How the numbers of a column are written.
+/// Format of the numbers of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColumnKind {
     /// As a number that reads back to the same bits.
@@ -33,7 +33,7 @@ pub enum ColumnKind {
 pub struct EventRecord {
     /// Time since the start of the run, s.
     pub time_s: f64,
-    /// What happened.
+    /// Kind of the event.
     pub kind: EventKind,
     /// Phase before the event: -1, 0 (stick) or +1.
     pub from: i8,
@@ -56,7 +56,7 @@ pub struct SymptomEvent {
     pub time_s: f64,
     /// The effect's name.
     pub effect: &'static str,
-    /// What happened.
+    /// Kind of the event.
     pub word: Word,
     /// Angle of the joint, rad.
     pub angle_rad: f64,

@@ -17,7 +17,7 @@ pub struct Walk<M> {
 }
 
 impl<M: Borrow<Motion>> Walk<M> {
-    /// From the motion's beginning, in steps of `step_s`.
+    /// Walk from the motion's beginning, in steps of `step_s`.
     pub fn new(motion: M, step_s: f64) -> Self {
         let piece = motion.borrow().piece(0.0);
         let now = body(&piece, 0.0);

@@ -1,4 +1,4 @@
-//! What effects cost in instructions, counted by valgrind: an effect that a
+//! Cost of effects in instructions, counted by valgrind: an effect that a
 //! scene leaves out executes nothing, and the costs of those that it lists add
 //! up to that of the scene.
 //!
@@ -253,7 +253,7 @@ fn costs_add_up() {
         "sum",
         100.0 * sum / whole
     );
-    // A step that changes its modes is folded again, each time by all parts: whoever changes them
-    // costs that of the others, too.
+    // A step that changes its modes is folded again, each time by all parts: an effect that changes
+    // them costs that of the others, too.
     assert!((sum / whole - 1.0).abs() <= 0.2);
 }

@@ -217,7 +217,6 @@ fn torque_never_exceeds_the_static_limit() {
     }
 }
 
-/// Also where a step is far too long for the damping, and finds the break at its end only.
 /// The laws of what a summary says of the torque.
 fn assert_within_what_was_shown(torque: &TorqueSummary, label: &str) {
     let label = format!("{label}: {torque:?}");
@@ -228,6 +227,7 @@ fn assert_within_what_was_shown(torque: &TorqueSummary, label: &str) {
     assert!(torque.rms_nm <= most_nm + rounding, "{label}");
 }
 
+/// Includes steps that are far too long for the damping, and find the break at their end only.
 #[test]
 fn what_a_summary_says_of_the_torque_is_within_what_was_shown() {
     let motion =
@@ -295,7 +295,7 @@ fn torque_over_a_gap(start_ticks: u32, gap_ticks: u32, ticks: u32) -> (f64, f64)
     )
 }
 
-/// By closed forms: 400 N·m/rad at 0.5 rad/s, up to 0.4 N·m after 2 ms, then 0.2 N·m.
+/// Compares with closed forms: 400 N·m/rad at 0.5 rad/s, up to 0.4 N·m after 2 ms, then 0.2 N·m.
 #[test]
 fn the_torque_of_a_gap_is_what_was_held() {
     let rise = |from_nm: f64, time_s: f64| from_nm * time_s + 100.0 * time_s * time_s;
@@ -308,7 +308,7 @@ fn the_torque_of_a_gap_is_what_was_held() {
     };
     for gap_ticks in [1, 2, 3, 5, 9] {
         // In stick at 0.2 N·m, from 1 ms on; what is caught up goes on, after more it begins
-        // anew at the end of a tick.
+        // again at the end of a tick.
         let found = torque_over_a_gap(20, gap_ticks, 35);
         let held_s = if found.1 > 3.5 * 5e-5 {
             found.1 + 5e-5
@@ -354,7 +354,7 @@ fn a_plant_that_diverges_is_not_the_solvers_fault() {
 }
 
 /// A shaft too fast to be believed: a drive holds its torque, lets go, and catches up or begins
-/// anew. What a summary says is what it showed, and the energy balances.
+/// again. What a summary says is what it showed, and the energy balances.
 #[test]
 fn samples_that_a_device_refuses_are_in_the_accounting() {
     const DEVICE: &str =

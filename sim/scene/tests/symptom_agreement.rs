@@ -65,7 +65,7 @@ fn render(text: &str, solver: &str) -> (Vec<(f64, f64)>, Vec<SymptomEvent>) {
 /// Columns that are of no symptom.
 const SUMS: [&str; 3] = ["hand_torque_nm", "torque_nm", "model_torque_nm"];
 
-/// Without the events whose order, or existence, rounding decides.
+/// Returns the events without those whose order, or existence, rounding decides.
 fn apart(events: &[SymptomEvent], others: &[SymptomEvent]) -> Vec<SymptomEvent> {
     let is_close = |e: &SymptomEvent| {
         [events, others].iter().any(|list| {
@@ -86,7 +86,7 @@ struct Worst {
     rows: usize,
 }
 
-/// What disagrees first, if anything.
+/// Fails with the first disagreement, if there is any.
 fn compare(text: &str, tolerance: &Tolerance, worst: &mut Worst) -> Result<(), String> {
     let (rows, events) = render(
         text,
@@ -134,7 +134,7 @@ fn compare(text: &str, tolerance: &Tolerance, worst: &mut Worst) -> Result<(), S
         .chain(&exact_events)
         .map(|e| e.time_s)
         .collect();
-    // What a muscle is told jumps where it is armed beyond its threshold: a step smears
+    // The input of a muscle jumps where it is armed beyond its threshold: a step smears
     // that over a tick.
     if exact_events
         .first()
@@ -195,7 +195,7 @@ const USUAL: Tolerance = Tolerance {
     torque_nm: 1e-4,
 };
 
-/// In the tick of its release the torque is a line between its ends.
+/// Tolerance for a release by torque: in its tick the torque is a line between its ends.
 const LINE: Tolerance = Tolerance {
     time_s: 1e-5,
     ..USUAL

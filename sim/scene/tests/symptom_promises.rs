@@ -1,4 +1,4 @@
-//! What the symptoms are known for, a sentence a test, each as `reference` solves
+//! Known characteristics of the symptoms, a sentence a test, each as `reference` solves
 //! it, as the device steps it (20 kHz, f32), and behind the encoder's counts; in
 //! the scenes that ship where one shows it.
 //!

@@ -175,7 +175,7 @@ fn all(solver: &str, worst: (f64, f64)) {
     }
 }
 
-/// On the device's ticks, in this precision.
+/// Solver of a scene with steps on the device's ticks, in this precision.
 fn stepped(precision: &str) -> String {
     format!("kind = \"exact-events\"\nstep_s = 5e-5\nprecision = \"{precision}\"")
 }

@@ -1,4 +1,4 @@
-//! Where a scene's numbers are not to be trusted, the run says so: each warning
+//! Warnings of a run where a scene's numbers are not to be trusted: each warning
 //! on both sides of its limit.
 
 use crepitus_scene::run::{STRUCK_COLUMN, columns};

@@ -24,17 +24,17 @@ pub struct Cross {
     bins: Vec<(f64, f64, Complex<f64>)>,
 }
 
-/// How alike two signals are.
+/// Similarity of two signals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Likeness {
     /// Largest correlation, 1 for the same shape.
     pub correlation: f64,
-    /// By how much the second lags then, s.
+    /// Lag of the second signal at that correlation, s.
     pub lag_s: f64,
 }
 
 impl Cross {
-    /// Of two signals of one length, a value every `step_s`; `None` if they are shorter
+    /// Spectra of two signals of one length, a value every `step_s`; `None` if they are shorter
     /// than a window of 256.
     pub fn new(x: &[f64], y: &[f64], step_s: f64) -> Option<Self> {
         let count = x.len().min(y.len());
@@ -113,7 +113,7 @@ impl Cross {
         (x.sqrt(), y.sqrt())
     }
 
-    /// How alike they are in a band, at the best lag of at most `most_lag_s` either way.
+    /// Similarity of both in a band, at the best lag of at most `most_lag_s` either way.
     pub fn likeness(&self, low_hz: f64, high_hz: f64, most_lag_s: f64) -> Likeness {
         let (x, y) = self.rms(low_hz, high_hz, |_| 1.0);
         let at = |lag_s: f64| -> f64 {

@@ -17,13 +17,13 @@ use std::sync::Arc;
 pub use realfft::num_complex::Complex;
 use realfft::{RealFftPlanner, RealToComplex};
 
-/// What is known of the spectrum at the end of a run.
+/// Estimate of the spectrum at the end of a run.
 #[derive(Clone, Debug)]
 pub struct Spectrum {
     /// Amplitude at each whole multiple of the resolution, from 0 on, in the
     /// unit of the samples.
     pub amplitudes: Vec<f64>,
-    /// From one amplitude to the next, Hz.
+    /// Step from one amplitude to the next, Hz.
     pub resolution_hz: f64,
     /// Windows that it is the mean of.
     pub segments: u64,
@@ -52,7 +52,7 @@ impl Spectrum {
     }
 }
 
-/// The plan of a transform of so many real values. Whoever transforms takes it from here: the planner
+/// The plan of a transform of so many real values. A crate that transforms takes it from here: the planner
 /// is generic, and each crate that calls it would compile all its kernels.
 pub fn forward_transform(length: usize) -> Arc<dyn RealToComplex<f64>> {
     RealFftPlanner::new().plan_fft_forward(length)

@@ -1,4 +1,4 @@
-//! Puts whoever must hold through the hard cases, and prints a line a case:
+//! Runs every subject that must hold through the hard cases, and prints a line a case:
 //! `H01 holds`, `H01 broken: …` or `H01 panics`. `crepitus-faults` runs it on
 //! sources with a planted fault.
 
@@ -16,7 +16,7 @@ impl Watcher for Patient {
     }
 }
 
-/// What became of a case.
+/// Outcome of a case.
 fn outcome(case: &Case) -> String {
     let plan = Plan {
         cases: vec![case.clone()],

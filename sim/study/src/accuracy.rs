@@ -1,4 +1,4 @@
-//! What accuracy costs in time: every rung of the solver ladder, in both
+//! Cost of accuracy in time: every rung of the solver ladder, in both
 //! precisions, over a range of steps, against the event-driven reference.
 //!
 //! ```text

@@ -45,13 +45,13 @@ impl<C> Limits<C> {
     }
 }
 
-/// Why a text is not a valid list of limits.
+/// Reason why a text is not a valid list of limits.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum LimitsError<C> {
     /// No limit.
     Empty,
-    /// Not KEY=VALUE.
+    /// Part that is not KEY=VALUE.
     Form {
         /// The invalid part.
         part: String,
@@ -66,7 +66,7 @@ pub enum LimitsError<C> {
         /// The criterion.
         criterion: C,
     },
-    /// Not a number above zero.
+    /// Value that is not a number above zero.
     Value {
         /// The criterion.
         criterion: C,

@@ -38,10 +38,10 @@ pub fn match_events(
 
 /// Something that happens at a time.
 pub trait Alike: Copy {
-    /// Since the start of the run, s.
+    /// Time since the start of the run, s.
     fn time_s(&self) -> f64;
 
-    /// Whether both are of one kind.
+    /// Returns whether both are of one kind.
     fn is_like(&self, other: &Self) -> bool;
 }
 
@@ -141,7 +141,7 @@ mod tests {
     use super::*;
     use crepitus_model::Sense;
 
-    /// With ten cycles, all but the last stick are more than a cycle away.
+    /// End of the run, s: with ten cycles, all but the last stick are more than a cycle away.
     const END_S: f64 = 0.305;
 
     /// Cycles of 30 ms: a break, 29 ms later a stick.

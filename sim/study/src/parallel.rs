@@ -8,7 +8,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-/// How often the watcher is called while no item ends.
+/// Interval at which the watcher is called while no item ends.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Work done, and whether it was cancelled.
@@ -34,7 +34,7 @@ impl Meter {
         self.done.fetch_add(amount, Ordering::Relaxed);
     }
 
-    /// Whether the watcher has cancelled the work.
+    /// Returns whether the watcher has cancelled the work.
     pub(crate) fn is_stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }

@@ -42,12 +42,12 @@ impl<'a> Sampling<'a> {
         self.steps
     }
 
-    /// When the last step ends, s.
+    /// End of the last step, s.
     pub fn end_s(&self) -> f64 {
         self.time_s(self.steps, 0.0)
     }
 
-    /// When `fraction` of a step has passed after `n` whole ones, s.
+    /// Time at which `fraction` of a step has passed after `n` whole ones, s.
     #[inline]
     pub fn time_s(&self, n: u64, fraction: f64) -> f64 {
         let steps = f64::from_whole(n) + fraction;

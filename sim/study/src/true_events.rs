@@ -35,7 +35,7 @@ impl TimedEvent {
         }
     }
 
-    /// Whether both are the same kind of event in the same sense.
+    /// Returns whether both are the same kind of event in the same sense.
     pub fn is_like(&self, other: &Self) -> bool {
         self.kind == other.kind && self.sense == other.sense
     }
@@ -65,10 +65,10 @@ pub fn true_events(
     }
 }
 
-/// As [`true_events`], calling `poll` now and then.
+/// [`true_events`] with calls of `poll` now and then.
 ///
 /// # Errors
-/// What `poll` returns.
+/// Error of `poll`.
 pub fn true_events_while<E>(
     settings: &Validated<Settings>,
     motion: &Motion,

@@ -1,4 +1,4 @@
-//! What the hand gets of the fast part of a joint's torque: at each step of the chain
+//! Fast part of a joint's torque as the hand gets it: at each step of the chain
 //! from a bare diseased knee to the device with its actuator on the shell.
 //!
 //! Measured is what the palm feels: its acceleration between 15 and 500 Hz, against that
@@ -33,7 +33,7 @@ const MOST_LAG_S: f64 = 5e-3;
 /// Share of a run that is left out at its beginning.
 const SETTLES: f64 = 0.3;
 
-/// What to study.
+/// Plan of a study.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// A scene for each speed: one with a hand that grips a shell with an actuator.
@@ -42,7 +42,7 @@ pub struct Plan {
     pub draws: usize,
 }
 
-/// What was found.
+/// Results of a study.
 #[derive(Clone, Debug, Serialize)]
 pub struct VibrationStudy {
     /// A table for each scene.
@@ -63,7 +63,7 @@ pub struct AtSpeed {
     /// Spectra at the hand, Hz and m/s² rms in each bin: of the bare knee, of the motor
     /// alone, and with the actuator.
     pub spectrum: Vec<(f64, [f64; 3])>,
-    /// With everything off at once.
+    /// Result of the draws, with everything off at once.
     pub draws: Option<Draws>,
 }
 
@@ -72,15 +72,15 @@ pub struct AtSpeed {
 pub struct Row {
     /// Which.
     pub step: Step,
-    /// What was measured, unless the run failed.
+    /// Measures, unless the run failed.
     #[serde(flatten)]
     pub measured: Option<Measured>,
-    /// Why it failed.
+    /// Reason why the run failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
 
-/// What was measured of a step.
+/// Measures of a step of the chain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Measured {
     /// Acceleration of the palm in the band, m/s² rms.
@@ -95,11 +95,11 @@ pub struct Measured {
     /// Share of T/r that arrives at a shell that is held: of what it gets, that which
     /// has the shape of T; none for a bare knee.
     pub share: Option<f64>,
-    /// Of the coil: current, A rms, heat, W, and the largest excursion, mm.
+    /// Measures of the coil: current, A rms, heat, W, and the largest excursion, mm.
     pub coil: Option<Coil>,
 }
 
-/// What the coil does.
+/// Measures of the coil.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Coil {
     /// A rms.
@@ -110,12 +110,12 @@ pub struct Coil {
     pub excursion_mm: f64,
 }
 
-/// How alike two signals are in the band.
+/// Likeness of two signals in the band.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Like {
     /// Largest correlation, 1 for the same shape.
     pub correlation: f64,
-    /// By how much the device's lags then, s.
+    /// Lag of the device's signal at that correlation, s.
     pub lag_s: f64,
 }
 
@@ -126,16 +126,16 @@ impl From<Likeness> for Like {
     }
 }
 
-/// Why a scene cannot be studied.
+/// Reason why a scene cannot be studied.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum VibrationError {
     /// Something that it needs is missing.
     #[error("the scene has no [effects.{missing}]: {why}")]
     Missing {
-        /// Which effect.
+        /// Name of the missing effect.
         missing: &'static str,
-        /// What it is needed for.
+        /// Reason why it is needed.
         why: &'static str,
     },
     /// The watcher cancelled it.
@@ -231,7 +231,7 @@ fn ticks(scene: &Scene) -> f64 {
     f64::from_whole(step_count(scene))
 }
 
-/// What is compared has to be there.
+/// Rejects a scene that lacks what is compared.
 fn check(scene: &Scene) -> Result<(), VibrationError> {
     for (missing, why) in [
         ("crepitus", "it is the joint's grating that is compared"),

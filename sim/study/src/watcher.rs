@@ -17,7 +17,7 @@ pub trait Watcher {
 #[error("ended early")]
 pub struct Cancelled;
 
-/// Why a study ended early.
+/// Reason why a study ended early.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StudyError {

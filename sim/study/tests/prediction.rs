@@ -1,4 +1,4 @@
-//! What it would win to show not the torque of the tick but what the joint is
+//! Benefit of showing not the torque of the tick but the torque that the joint is
 //! expected to have next, on the scenes of the accuracy study: the held error
 //! with and without, on the true velocity and behind the device's encoder.
 //!
@@ -38,7 +38,7 @@ use crepitus_study::accuracy::held_torque::HeldTorque;
 use crepitus_study::accuracy::scenes::standard;
 use crepitus_study::sampling::Sampling;
 
-/// What the joint knows of the shaft.
+/// The joint's knowledge of the shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Sight {
     True,

@@ -1,4 +1,4 @@
-//! What the hand gets of the actuator on the shell.
+//! Tests of the actuator on the shell: what the hand gets of it.
 
 use crepitus_plant::plant::Coil;
 use crepitus_scene::{Overrides, Scene, Walk};

@@ -21,7 +21,7 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// From `min` to `max`, both allowed.
+    /// Range from `min` to `max`, both allowed.
     pub(crate) const fn closed(min: f64, max: f64) -> Self {
         Self {
             min,
@@ -30,7 +30,7 @@ impl Range {
         }
     }
 
-    /// Above `min`, up to `max`.
+    /// Range above `min`, up to `max`.
     pub(crate) const fn above(min: f64, max: f64) -> Self {
         Self {
             min,
@@ -124,7 +124,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Whether there is such a key.
+    /// Returns whether there is such a key.
     pub(crate) fn has(&self, key: &str) -> bool {
         self.table.contains_key(key)
     }

@@ -10,7 +10,7 @@ use tempfile::TempDir;
 #[derive(Debug)]
 pub struct Folder {
     target: PathBuf,
-    /// Only this user's, as temporary folders are; `files` inside is as any other.
+    /// Temporary folder, which is only this user's, as such folders are; `files` inside is as any other.
     _parts: TempDir,
     files: PathBuf,
 }
@@ -66,7 +66,7 @@ impl Folder {
         ))
     }
 
-    /// Where a file of this name is written, for what creates its files itself.
+    /// Path to which a file of this name is written, for a caller that creates its files itself.
     #[must_use]
     pub fn path_of(&self, name: &Path) -> PathBuf {
         self.files.join(name)

@@ -43,7 +43,7 @@ impl<W: Write> TraceCsv<W> {
     }
 }
 
-/// Apart from the writer, which is generic: compiled here, whoever writes.
+/// Appends a row, apart from the generic writer so that it is compiled here for every writer.
 fn append_row(line: &mut String, columns: &[Column], values: &[f64]) {
     for (column, &value) in columns.iter().zip(values) {
         if !line.is_empty() {

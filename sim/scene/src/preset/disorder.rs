@@ -1,12 +1,12 @@
-//! What a preset renders, how severe it is, and how well founded its numbers are.
+//! Disorder and severity of a preset, and the evidence for its numbers.
 
 crepitus_model::named! {
     /// A group of presets: what an examiner tells apart.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
     pub enum Disorder {
-        /// How the range of motion ends.
+        /// Manner in which the range of motion ends.
         EndFeel => "end-feel",
-        /// Where it ends.
+        /// Angle at which the range of motion ends.
         RangeDeficit => "range-deficit",
         /// Lead-pipe rigidity.
         Rigidity => "rigidity",
@@ -41,7 +41,7 @@ impl Disorder {
         }
     }
 
-    /// What its scale calls a knee without it: no preset, but the effect's absence.
+    /// Name that the disorder's scale has for a knee without it: no preset, but the effect's absence.
     pub const fn grade_0(self) -> Option<&'static str> {
         match self {
             Self::Rigidity | Self::Cogwheel => Some("UPDRS 0"),

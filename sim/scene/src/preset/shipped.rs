@@ -70,7 +70,7 @@ files![
 ];
 
 impl PresetFile {
-    /// Where it stands in the repository.
+    /// Path of the file in the repository.
     pub fn file(&self) -> PathBuf {
         PathBuf::from(format!("presets/{}.toml", self.name))
     }

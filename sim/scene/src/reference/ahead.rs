@@ -16,14 +16,14 @@ use std::ops::ControlFlow;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PhaseEnd {
     pub(super) time_s: f64,
-    /// Of the slip that begins, or ends.
+    /// Sense of the slip that begins, or ends.
     pub(super) sense: Sense,
 }
 
 /// State of the search for the end of the present phase in the present piece.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ahead {
-    /// From when on it has not been searched, s.
+    /// Time from which on the piece has not been searched, s.
     from_s: f64,
     /// Whether anything has been searched.
     begun: bool,
@@ -33,7 +33,7 @@ pub(super) struct Ahead {
 }
 
 impl Ahead {
-    /// Nothing is known from `time_s` on.
+    /// State in which nothing is known from `time_s` on.
     pub(super) fn from(time_s: f64) -> Self {
         Self {
             from_s: time_s,

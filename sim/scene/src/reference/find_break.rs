@@ -1,4 +1,4 @@
-//! When a stick of the reference solver breaks.
+//! Time at which a stick of the reference solver breaks.
 
 use super::Reference;
 use super::ahead::PhaseEnd;
@@ -40,7 +40,7 @@ impl Reference<'_> {
         )
     }
 
-    /// When s·T first reaches a mark, on a piece of any shape.
+    /// The first time at which s·T reaches a mark, on a piece of any shape.
     fn reaches<B>(
         &self,
         anchor: (f64, f64),
@@ -155,7 +155,7 @@ impl Reference<'_> {
         ControlFlow::Continue(found.map(|(time_s, sense)| PhaseEnd { time_s, sense }))
     }
 
-    /// Whether the true torque of a stick is at least Tk in `sense`, to
+    /// Returns whether the true torque of a stick is at least Tk in `sense`, to
     /// rounding: the shaft overtakes an object that slips.
     pub(super) fn slips(&self, theta: f64, phi: f64, shaft: &ShaftState, sense: Sense) -> bool {
         let kinetic = self.settings.parameters.kinetic_torque_nm;

@@ -1,4 +1,4 @@
-//! When a slip of the reference solver meets the shaft's velocity.
+//! Time at which a slip of the reference solver meets the shaft's velocity.
 
 use super::first_root::{Sample, Touch, first_root};
 use super::rules::ROUNDINGS;
@@ -127,7 +127,7 @@ impl Reference<'_> {
             .map_or_else(|| self.swing(slip, self.time_s).0, |(_, x_end)| x_end)
     }
 
-    /// Whether the shaft has kept, since the slip began, the constant velocity
+    /// Returns whether the shaft has kept, since the slip began, the constant velocity
     /// that the slip began with.
     fn is_steady(&self, slip: &Slip) -> bool {
         self.piece.is_steady()

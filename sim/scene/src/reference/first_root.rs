@@ -13,7 +13,7 @@
 
 use std::ops::ControlFlow;
 
-/// How many evaluations go by between two calls of `poll`.
+/// Number of evaluations between two calls of `poll`.
 const POLL_EVERY: u32 = 1 << 12;
 
 /// A function at one time.
@@ -25,14 +25,14 @@ pub(super) struct Sample {
     pub(super) slope: f64,
     /// A bound of |g̈| from here to the end of the search.
     pub(super) bound: f64,
-    /// What of `value` may be rounding.
+    /// Part of `value` that may be rounding.
     pub(super) noise: f64,
-    /// How far below zero still counts as at zero; at least `noise`.
+    /// Depth below zero that still counts as at zero; at least `noise`.
     pub(super) slack: f64,
 }
 
 impl Sample {
-    /// How far ahead g surely stays above `-below`, from the parabola that
+    /// Time ahead in which g surely stays above `-below`, s, from the parabola that
     /// bounds it from below; infinite where nothing bends it down.
     fn clear_s(&self, below: f64) -> f64 {
         let height = self.value + below;
@@ -54,10 +54,10 @@ impl Sample {
     }
 }
 
-/// What it means that g comes down to zero, as far as rounding tells.
+/// Meaning of a g that comes down to zero, as far as rounding tells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Touch {
-    /// Nothing, until it is below.
+    /// No root until g is below zero.
     Passes,
     /// It is the root, for a g that comes from above; whether it does at the
     /// start of the search, too.
@@ -70,7 +70,7 @@ pub(super) enum Touch {
 /// begins below zero by more than its slack is, at once.
 ///
 /// # Errors
-/// What `poll` breaks with; it is called now and then, so that no search is
+/// The value that `poll` breaks with; `poll` is called now and then, so that no search is
 /// without an end.
 pub(super) fn first_root<B>(
     from_s: f64,

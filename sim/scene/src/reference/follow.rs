@@ -1,4 +1,4 @@
-//! Who follows a run of the reference: its events, and a way to end it.
+//! Followers of a run of the reference: its events, and a way to end it.
 
 use crepitus_model::Event;
 use std::convert::Infallible;
@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 ///
 /// A closure `FnMut(Event<f64>)` follows to the end.
 pub trait Follow {
-    /// Why it ends early.
+    /// Reason for the early end of the run.
     type Stop;
 
     /// An event; its `fraction` is the time since the start of the run, s.

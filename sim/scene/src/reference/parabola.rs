@@ -1,4 +1,4 @@
-//! When a torque that is a parabola in time reaches a limit.
+//! Time at which a torque that is a parabola in time reaches a limit.
 
 /// Distance to a limit: left − rate·u − curvature·u²/2.
 #[derive(Clone, Copy, Debug)]

@@ -11,9 +11,9 @@ use std::ops::ControlFlow;
 /// A cycle that repeats.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Repeat {
-    /// When the first began, s.
+    /// Start of the first cycle, s.
     origin_s: f64,
-    /// How many are over.
+    /// Number of cycles that are over.
     count: f64,
     cycle: Cycle,
 }
@@ -28,12 +28,12 @@ struct Cycle {
 }
 
 impl Repeat {
-    /// When the stick of the present cycle breaks, s.
+    /// Time at which the stick of the present cycle breaks, s.
     fn break_s(&self) -> f64 {
         self.origin_s + (self.count * self.length_s() + self.cycle.stick_s)
     }
 
-    /// When its slip ends, s.
+    /// Time at which the slip of the present cycle ends, s.
     fn end_s(&self) -> f64 {
         self.origin_s + (self.count + 1.0) * self.length_s()
     }
@@ -44,7 +44,7 @@ impl Repeat {
 }
 
 impl Reference<'_> {
-    /// At the beginning of a stick: from now on it is one cycle after the
+    /// Begins to repeat, at the beginning of a stick: from now on it is one cycle after the
     /// other, if it comes back to where it began.
     pub(super) fn begin_repeating(&mut self) {
         self.repeat = self.cycle().map(|cycle| Repeat {

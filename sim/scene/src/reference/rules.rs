@@ -1,11 +1,11 @@
-//! What happens at an event: the rules of the three conventions.
+//! Rules of the three conventions for what happens at an event.
 
 use super::{Follow, Reference, Slip, State};
 use crepitus_model::{Convention, Event, EventKind, Phase, Restart, Sense};
 use crepitus_plant::ShaftState;
 use std::ops::ControlFlow;
 
-/// Within how many roundings Ts and Tk are equal.
+/// Number of roundings within which Ts and Tk are equal.
 pub(super) const ROUNDINGS: f64 = 4.0;
 
 impl Reference<'_> {

@@ -20,7 +20,7 @@ use crepitus_plant::{Motion, Plant};
 pub(super) struct PlantTotals {
     /// The balance of its mechanics and its motor.
     pub(super) balance: EnergyBalance,
-    /// Where the work of the rendered torque comes from.
+    /// Sources of the work of the rendered torque.
     pub(super) rendering: Rendering,
     /// Torque at the hand; `None` for a released leg.
     pub(super) felt: Option<Felt>,
@@ -33,13 +33,13 @@ pub(super) struct PlantTotals {
 
 /// The work that the actuator takes out of the mechanics, and its parts, J.
 pub(super) struct Rendering {
-    /// Of the model's torque, held over each tick.
+    /// Work of the model's torque, held over each tick.
     pub(super) held: f64,
-    /// Of what each stage adds.
+    /// Work of the torque that each stage adds.
     pub(super) stages: Vec<(&'static str, f64)>,
-    /// Of what guards and limits of a device take away; none without one.
+    /// Work of the torque that guards and limits of a device take away; none without one.
     pub(super) limits: Option<f64>,
-    /// Of the torque that there was.
+    /// Work of the torque that there was.
     pub(super) absorbed: f64,
 }
 
@@ -83,7 +83,7 @@ struct Stage {
     spec: &'static EffectSpec,
     /// Its place in the model's table.
     place: usize,
-    /// What it adds is torque of the motor.
+    /// Whether what it adds is torque of the motor.
     acts_on_joint: bool,
     added_nm: f64,
     work_j: f64,
@@ -128,7 +128,7 @@ struct Run {
     tick_s: f64,
     /// Voltage for the coil, which its PWM loads with the next tick.
     coil_v: f64,
-    /// What the hand feels in the first tick stands in the first row, too.
+    /// Torque that the hand feels in the first tick, N·m; it stands in the first row, too.
     first_felt_nm: f64,
 }
 
@@ -137,8 +137,8 @@ struct Run {
 const FASTEST: f64 = 1e15;
 
 impl Run {
-    /// Whether a state is no number, or soon will be, and which: a shaft that is none makes an
-    /// object none, and one whose square overflows makes the plant's others none.
+    /// Returns whether a state is NaN, infinite, or soon will be, and which: a shaft that is not finite makes
+    /// an object so, and one whose square overflows makes the plant's other states so.
     fn diverged(&self, scene: &Scene, by_s: f64) -> Option<Diverged> {
         let shaft = self.plant.shaft();
         let fits = |x: f64| x.abs() < FASTEST;
@@ -314,7 +314,7 @@ fn tell(events: &mut Vec<Happened>, watch: &mut dyn Watch) -> Result<(), Stopped
     Ok(())
 }
 
-/// What the hand feels in the first tick: a plant that is thrown away goes
+/// Torque that the hand feels in the first tick, N·m: a plant that is thrown away goes
 /// through it.
 fn first_felt_nm(scene: &Scene) -> Result<f64, crepitus_model::SettingsError> {
     let mut plant = scene.assemble()?;

@@ -100,7 +100,7 @@ pub(super) trait Device {
     /// Writes its columns.
     fn write(&self, row: &mut Vec<f64>);
 
-    /// Whether its state is still numbers.
+    /// Returns whether its state is still numbers.
     fn is_finite(&self) -> bool;
 
     /// Completes the energy balance of the object, if there is one, and returns in how many
@@ -193,7 +193,7 @@ struct Maker<'a, S> {
     sensor: S,
 }
 
-/// With the joint that the drive renders.
+/// Boxes a device with the joint that the drive renders.
 impl<F: Real, S: Sensor<F> + 'static> LocatorVisitor<F> for Maker<'_, S> {
     type Output = Result<Box<dyn Device>, SettingsError>;
 
@@ -225,7 +225,7 @@ impl<S: 'static> Maker<'_, S> {
     }
 }
 
-/// What is shown before the first tick: of a bare solver, what its stages make
+/// Output before the first tick: of a bare solver, what its stages make
 /// of the shaft as it begins; of a drive, which was there before, nothing.
 fn first<F: Real>(
     scene: &Scene,

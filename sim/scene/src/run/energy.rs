@@ -18,7 +18,7 @@ pub(super) struct Energy {
 }
 
 impl Energy {
-    /// At the start of a run: θ = 0, θ̇ = Ω.
+    /// Terms at the start of a run: θ = 0, θ̇ = Ω.
     pub(super) fn new(parameters: &Parameters, omega_rad_s: f64) -> Self {
         let inertia_kg_m2 = parameters.inertia_kg_m2;
         Self {
@@ -89,7 +89,7 @@ pub(super) fn viscous_loss(
     /// Up to so many they are as quick as two exponentials, and keep the digits in which
     /// those cancel.
     const FEW_PANELS: f64 = 64.0;
-    /// Beyond them the loss is taken from the stored energy, which it equals.
+    /// Number of panels beyond which the loss is taken from the stored energy, which it equals.
     const MOST_PANELS: f64 = 1e6;
     const NODES: [(f64, f64); 5] = [
         (0.0, 0.568_888_888_888_888_9),
@@ -161,7 +161,7 @@ fn energy(p: &Parameters, (x, v): (f64, f64)) -> f64 {
 mod tests {
     use super::*;
 
-    /// Of one long stretch, and of the short ones that it is made of, each by quadrature.
+    /// Compares one long stretch with the short ones that it is made of, each by quadrature.
     #[test]
     fn above_critical_damping_the_loss_is_that_of_many_short_stretches() {
         for ratio in [1.05, 1.2, 1.5, 10.0, 300.0] {

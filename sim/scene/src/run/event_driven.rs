@@ -15,10 +15,10 @@ use crepitus_plant::{Motion, ShaftState};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-/// How many rows go by between two reports of progress.
+/// Number of rows between two reports of progress.
 const PROGRESS_ROWS: u64 = 1 << 12;
 
-/// How often a slip is looked at in a swing of the object, however far apart
+/// Number of looks at a slip in a swing of the object, however far apart
 /// the rows are.
 const LOOKS_PER_SWING: f64 = 64.0;
 
@@ -136,8 +136,8 @@ struct EventAccounting<'a> {
     phi_start_rad: f64,
     /// The last point that is accounted: its time, angle and stick.
     accounted: (f64, f64, StickEnd),
-    /// Until when the run has been looked at, s, and how far to go to the next
-    /// look.
+    /// Time up to which the run has been looked at, s, and the time from there to the
+    /// next look.
     looked_s: f64,
     look_s: f64,
 }

@@ -1,4 +1,4 @@
-//! By how much the shaft leads the object in a slip: s·(Ω − θ̇).
+//! Lead of the shaft over the object in a slip: s·(Ω − θ̇).
 //!
 //! Friction opposes the sliding, so in a slip of sense s the shaft has to be
 //! the faster one in that sense. What the energy balance cannot see is a slip
@@ -14,13 +14,13 @@ use std::f64::consts::TAU;
 /// no state but a sine that is computed to be looked at.
 const LOOKS_PER_SWING: f64 = 32.0;
 
-/// What of the lead may be rounding, as a share of |Ω| + |θ̇|.
+/// Part of the lead that may be rounding, as a share of |Ω| + |θ̇|.
 const ROUNDING_F64: f64 = 1e-12;
 
 /// The same in single precision.
 const ROUNDING_F32: f64 = 1e-4;
 
-/// How long, and how far, the shaft was behind.
+/// Duration and extent of the shaft's lag behind the object.
 #[derive(Clone, Copy, Debug)]
 pub struct Lead {
     kinetic_nm: f64,
@@ -38,7 +38,7 @@ pub struct Lead {
 }
 
 impl Lead {
-    /// For looks `step_s` apart at a joint in single precision or double.
+    /// Empty record for looks `step_s` apart at a joint in single precision or double.
     pub fn new(settings: &Settings, step_s: f64, is_single: bool) -> Self {
         let stride = match settings.convention {
             Convention::Frozen => {
@@ -63,7 +63,7 @@ impl Lead {
         }
     }
 
-    /// At the end of a step in a slip: whether it is time for a look.
+    /// Counts a step in a slip, at its end; returns whether it is time for a look.
     #[inline]
     pub fn is_due(&mut self) -> bool {
         self.left -= 1;

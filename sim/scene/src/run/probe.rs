@@ -16,7 +16,7 @@ const STEPS: f64 = 20_000.0;
 const TIMINGS: u32 = 5;
 
 /// A difference of two times below this share of the longer one cannot be
-/// told from none, however quiet the machine.
+/// distinguished from zero, however quiet the machine.
 const LEAST_RESOLUTION: f64 = 0.01;
 
 /// Cost of one effect.
@@ -28,10 +28,10 @@ pub(super) struct Cost {
 /// The CPU time of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepTime {
-    /// Of the fastest timing, ns; infinite for a scene that cannot run.
+    /// Time of a step in the fastest timing, ns; infinite for a scene that cannot run.
     pub ns: f64,
-    /// How much longer a quarter of the timings took at most, the fastest
-    /// quarter, as a share of that: large where the machine was busy.
+    /// Excess of the longest timing in the fastest quarter over the fastest timing, as a share
+    /// of the latter: large where the machine was busy.
     pub spread: f64,
 }
 
@@ -43,7 +43,7 @@ impl StepTime {
     };
 }
 
-/// What something adds to a step: the time with it less the time without it,
+/// Time that something adds to a step: the time with it less the time without it,
 /// as far as the timings can tell.
 ///
 /// Both times have a spread, so the difference has the resolution
@@ -60,7 +60,7 @@ pub struct AddedTime {
 }
 
 impl AddedTime {
-    /// What `with` takes more than `without`.
+    /// Excess of `with` over `without`.
     pub fn between(with: StepTime, without: StepTime) -> Self {
         let difference = with.ns - without.ns;
         if !difference.is_finite() {
@@ -79,8 +79,8 @@ impl AddedTime {
         }
     }
 
-    /// Whether both times are known, and their difference is too small to be
-    /// told from none.
+    /// Returns whether both times are known, and their difference is too small to be
+    /// distinguished from zero.
     pub fn is_below_resolution(&self) -> bool {
         self.ns_per_step.is_none() && self.ns_resolution.is_finite()
     }
@@ -91,7 +91,7 @@ impl AddedTime {
 /// timing and may end it all.
 ///
 /// # Errors
-/// What `after_each` returns.
+/// The error that `after_each` returns.
 pub fn step_times<E>(
     scenes: &[Scene],
     timings: u32,

@@ -18,7 +18,7 @@ pub(super) trait Sensor<F: Real> {
     /// Takes in one step. Velocities are those just inside the step.
     fn see(&mut self, from: &Body, to: &Body) -> ShaftStep<F>;
 
-    /// Where it has seen the joint last.
+    /// Position at which it has last seen the joint.
     fn place(&self, to: &Body) -> Position<F>;
 
     /// Writes its columns.

@@ -21,14 +21,14 @@ use crepitus_plant::effect::Part;
 /// Ticks between a sample and the torque that answers it, of a bare solver.
 const BARE_DELAY_TICKS: usize = 1;
 
-/// What stands behind the symptoms of a bare solver.
+/// Stages behind the symptoms of a bare solver.
 pub(super) type BareStages<F, S> = Pipeline<F, (), S, Effects<F>>;
 
 /// Stages of the drive; its symptoms are always those of the firmware.
 pub(super) type DriveStages<F, S> =
     Pipeline<F, InputCheck<F>, S, SwitchedEffects<F>, TorqueLimits<F>>;
 
-/// Around a bare solver, or nothing.
+/// Returns the stages around a bare solver, or around nothing.
 pub(super) fn bare<F: Real, S: Symptom<F>>(
     scene: &Scene,
     step_s: f64,
@@ -42,7 +42,7 @@ pub(super) fn bare<F: Real, S: Symptom<F>>(
     ))
 }
 
-/// As the drive renders, armed long ago on a shaft at rest.
+/// Stages as the drive renders with them, armed long ago on a shaft at rest.
 pub(super) fn drive<F: Real, S: Symptom<F>>(
     scene: &Scene,
     step_s: f64,
@@ -144,7 +144,7 @@ pub(super) trait HasJoint<F: Real>: Rendering<F> {
     /// While samples are refused, what is held in the place of the object's torque, N·m.
     fn held_nm(&self) -> Option<F>;
 
-    /// After how many gaps the object began anew.
+    /// Number of gaps after which the object began again.
     fn restarts(&self) -> u32;
 }
 

@@ -15,10 +15,10 @@ use crepitus_model::{
     EVENTS_PER_STEP, Event, Phase, Real, Settings, ShaftStep, StickSlip, Validated,
 };
 
-/// How many steps go by between two reports of progress.
+/// Number of steps between two reports of progress.
 pub(super) const PROGRESS_STEPS: u64 = 1 << 16;
 
-/// How many steps go by between two looks at the state.
+/// Number of steps between two checks of the state.
 pub(super) const CHECK_STEPS: u64 = 1 << 10;
 
 /// Chooses the types that the scene calls for, and runs.
@@ -179,12 +179,12 @@ pub(super) struct StepAccounting {
     pub(super) crowded_steps: u64,
     /// While the device refuses samples.
     gap: Option<Gap>,
-    /// Gaps after which the joint began anew.
+    /// Gaps after which the joint began again.
     restarts: u32,
 }
 
 impl StepAccounting {
-    /// Of a joint in precision `F`.
+    /// Accounting of a joint in precision `F`.
     pub(super) fn new<F: Real>(
         settings: &Validated<Settings>,
         step_s: f64,
@@ -270,7 +270,7 @@ impl StepAccounting {
     }
 
     /// Accounts for a step whose sample a device took; `restarts` counts the gaps so far after
-    /// which its joint began anew.
+    /// which its joint began again.
     #[inline]
     pub(super) fn end_tick<F: Real, J: StickSlip<F>>(
         &mut self,

@@ -135,7 +135,7 @@ pub struct EventCounts {
 /// Cycles, from break to break in the same sense.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct CycleSummary {
-    /// How many were complete.
+    /// Number of complete cycles.
     pub count: u64,
     /// One over the mean length, Hz.
     pub frequency_hz: Option<f64>,
@@ -161,7 +161,7 @@ pub struct TorqueSummary {
 /// Impacts: each takes no time, so it has an impulse and no torque.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct ImpactSummary {
-    /// How many.
+    /// Number of impacts.
     pub count: u64,
     /// The largest impulse between rotor and joint, N·m·s.
     pub largest_nms: f64,
@@ -200,11 +200,11 @@ pub struct EnergySummary {
 /// what the convention does when the hand slows down in a slip.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LeadSummary {
-    /// For how long, s.
+    /// Time in slips with the shaft behind, s.
     pub behind_s: f64,
     /// Energy that friction gave meanwhile, J.
     pub behind_j: f64,
-    /// By how much at worst, rad/s.
+    /// Largest velocity by which the shaft was behind, rad/s.
     pub worst_behind_rad_s: f64,
 }
 
@@ -228,7 +228,7 @@ pub struct PlantEnergySummary {
 pub struct EnergyTerm {
     /// The effect that it belongs to.
     pub effect: &'static str,
-    /// What it is.
+    /// Description of the term.
     pub what: &'static str,
     /// `given`, `stored`, `lost` or `rendered`.
     pub account: &'static str,
@@ -239,20 +239,20 @@ pub struct EnergyTerm {
 /// The work of the rendered torque, J.
 #[derive(Clone, Debug, Serialize)]
 pub struct RenderingSummary {
-    /// Of the model's torque, as its own balance has it.
+    /// Work of the model's torque, as its own balance has it.
     pub model_j: f64,
-    /// Of holding that torque over each tick, and of what the sensor does not
+    /// Work of holding that torque over each tick, and of what the sensor does not
     /// see.
     pub sampling_j: f64,
-    /// Of what each stage of the device adds.
+    /// Work of the torque that each stage of the device adds.
     pub stages: Vec<StageWork>,
-    /// Of what its guards and limits take away; none in a scene without a
+    /// Work of the torque that its guards and limits take away; none in a scene without a
     /// device.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limits_j: Option<f64>,
-    /// Of the difference between the torque commanded and that of the motor.
+    /// Work of the difference between the torque commanded and that of the motor.
     pub actuator_j: f64,
-    /// Of the torque that there was.
+    /// Work of the torque that there was.
     pub absorbed_j: f64,
 }
 

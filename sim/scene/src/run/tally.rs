@@ -252,7 +252,7 @@ impl Tally {
         self.energy.held(gap.work_j);
     }
 
-    /// The end of a gap after which the object begins anew.
+    /// The end of a gap after which the object begins again.
     pub(super) fn restart(&mut self, gap: &Gap, now: ObjectState) {
         let s = gap.start;
         self.end_phase(s.time_s, s.phi_rad, s.theta_rad, s.theta_dot_rad_s);

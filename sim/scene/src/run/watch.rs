@@ -9,7 +9,7 @@ pub(super) struct Stopped;
 
 /// An [`Observer`] whose reasons stay with it.
 pub(super) trait Watch {
-    /// Whether rows of the trace are needed.
+    /// Returns whether rows of the trace are needed.
     fn wants_rows(&self) -> bool;
     fn row(&mut self, values: &[f64]) -> Result<(), Stopped>;
     fn event(&mut self, event: &EventRecord) -> Result<(), Stopped>;

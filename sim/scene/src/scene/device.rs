@@ -49,7 +49,7 @@ pub(super) fn check(
     }
 }
 
-/// Why no device renders these settings, if none does.
+/// Reason for which no device renders these settings, if none does.
 pub(crate) fn convention_refusal(settings: &Settings) -> Option<String> {
     if settings.convention != Convention::Frozen {
         return Some(format!(
@@ -111,7 +111,7 @@ pub fn caps_warning(
     })
 }
 
-/// Why a device with this encoder would refuse a joint, if it would.
+/// Reason for which a device with this encoder would refuse a joint, if it would.
 pub(super) fn guard_refusal(crepitus: &Crepitus, encoder: &EncoderSettings) -> Option<String> {
     let settings = &crepitus.settings;
     let (count_rad, most_rad) = (encoder.rad_per_count(), most_rad_per_count(settings));

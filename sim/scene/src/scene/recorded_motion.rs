@@ -86,7 +86,7 @@ pub(super) fn recording(
             ),
         ));
     };
-    // Whoever repeats the run finds it from anywhere.
+    // A program that repeats the run finds it from anywhere.
     section.note("file", Value::Text(whole_path.to_owned()));
     let motion = if repeat {
         Motion::repeated(&segments)

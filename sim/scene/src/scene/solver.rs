@@ -7,10 +7,10 @@ use crepitus_model::solver::Solver;
 /// The most steps of one run, and the most rows of one trace.
 const MOST_STEPS: f64 = 1e12;
 
-/// How the joint is integrated.
+/// Solver that integrates the joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SolverChoice {
-    /// From event to event on the true motion, in f64.
+    /// Reference solver, from event to event on the true motion, in f64.
     Reference,
     /// A rung of the ladder.
     Ladder {
@@ -109,7 +109,7 @@ pub(super) fn read_trace_step(
     solver: SolverChoice,
     duration_s: f64,
 ) -> Result<f64, SceneError> {
-    /// Of `reference`, which has no step of its own: the device's tick.
+    /// Step of `reference`, which has none of its own: the device's tick.
     const DEFAULT_STEP_S: f64 = 5e-5;
     let wanted = match output {
         None => None,

@@ -32,7 +32,7 @@ impl Scene {
             .laws(&self.timing(step_s, delay_ticks))
     }
 
-    /// What a device without effects changes to render those that it lists.
+    /// Changes that make a device without effects render those that the scene lists.
     pub(crate) fn changes<F: Real>(
         &self,
         timing: &Timing,
@@ -47,7 +47,7 @@ impl Scene {
         effect_settings(&self.listed)
     }
 
-    /// How its device sees the shaft, and when.
+    /// Timing of its device, with its measurement of the shaft.
     pub(crate) fn timing(&self, step_s: f64, delay_ticks: usize) -> Timing {
         Timing {
             step_s,
@@ -56,7 +56,7 @@ impl Scene {
         }
     }
 
-    /// How its device sees the joint.
+    /// Measurement of the joint by its device.
     pub(crate) fn sight(&self) -> Sight {
         match &self.encoder {
             Some(encoder) => Sight::of_encoder(encoder),

@@ -17,7 +17,7 @@ impl Scene {
             .collect()
     }
 
-    /// Whether it calls for an effect.
+    /// Returns whether it calls for an effect.
     pub fn has(&self, effect: &str) -> bool {
         EFFECTS
             .iter()

@@ -1,4 +1,4 @@
-//! What holds for every symptom.
+//! Properties that hold for every symptom.
 
 use crate::support::{Given, TORQUE_NM, constant, events, given, jumps, near, symptom, words};
 use crepitus_plant::Motion;

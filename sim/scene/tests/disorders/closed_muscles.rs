@@ -1,4 +1,4 @@
-//! What is known in closed form of spasticity, clasp-knife and clonus.
+//! Properties of spasticity, clasp-knife and clonus that are known in closed form.
 
 use crate::any_symptom::motions;
 use crate::support::{

@@ -1,4 +1,4 @@
-//! What is known in closed form of walls, rigidity and texture.
+//! Properties of walls, rigidity and texture that are known in closed form.
 
 use crate::support::{
     TIME_S, TORQUE_NM, constant, events, given, jumps, near, times, torque_at, words, work_j,

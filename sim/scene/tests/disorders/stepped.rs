@@ -8,7 +8,7 @@ use crepitus_scene::reference::symptoms::SymptomEvent;
 pub(crate) const STEP_S: f64 = 2e-6;
 const END_S: f64 = 1.2;
 
-/// Within what the torques agree, N·m: at rest, and for a speed, N·m·s/rad: the
+/// Tolerances of the torques: at rest, N·m, and for a speed, N·m·s/rad: the
 /// stiffest rise over two steps.
 const TORQUE_NM: f64 = 1e-3;
 const TORQUE_NMS_PER_RAD: f64 = 2.0 * 500.0 * STEP_S;
@@ -17,7 +17,7 @@ const TORQUE_NMS_PER_RAD: f64 = 2.0 * 500.0 * STEP_S;
 /// on which side of an edge the joint rests.
 const STEADY: [&str; 3] = ["range-limit", "lead-pipe", "cogwheel"];
 
-/// Within what the times agree, s: a slow return shows what a step was late.
+/// Tolerance of the times, s: a slow return shows what a step was late.
 const TIME_S: f64 = 1e-4;
 
 /// Runs of each law.
@@ -42,7 +42,7 @@ impl Random {
         low + (high - low) * self.share()
     }
 
-    /// As [`Self::between`], but now and then a number at which a law is not
+    /// Returns what [`Self::between`] does, but now and then a number at which a law is not
     /// what it is in general.
     pub(crate) fn or(&mut self, low: f64, high: f64, special: &[f64]) -> f64 {
         let (usual, place) = (self.between(low, high), self.between(0.0, 3.0));

@@ -5,7 +5,7 @@ use crepitus_plant::motion::VelocityKnot;
 use crepitus_plant::piece::Curve;
 use crepitus_scene::reference::symptoms::{Keys, Symptom, SymptomEvent, Word};
 
-/// Within what the reference agrees with closed forms, s and N·m.
+/// Tolerances within which the reference agrees with closed forms, s and N·m.
 pub(crate) const TIME_S: f64 = 1e-9;
 pub(crate) const TORQUE_NM: f64 = 1e-9;
 

@@ -9,14 +9,14 @@ use std::path::Path;
 /// Time between the rows of a run, s.
 const ROW_S: f64 = 5e-5;
 
-/// How a scene is run, and within what it keeps its promises.
+/// Way of running a scene, and the tolerances within which it keeps its promises.
 pub(crate) struct Way {
     pub(crate) name: &'static str,
     set: &'static [(&'static str, &'static str)],
     solver: Option<&'static str>,
     /// An event's angle.
     pub(crate) angle_rad: f64,
-    /// What decides with the velocity.
+    /// Lateness of a decision that depends on the velocity, s.
     pub(crate) late_s: f64,
     /// A torque.
     pub(crate) torque_nm: f64,

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 pub(crate) const TICK_S: f64 = 5e-5;
 
-/// Within what stepped and event-driven laws agree.
+/// Tolerance within which stepped and event-driven laws agree.
 #[derive(Clone, Copy)]
 pub(crate) struct Tolerance {
     pub(crate) time_s: f64,

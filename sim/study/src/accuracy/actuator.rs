@@ -62,7 +62,7 @@ pub struct ActuatorPoint {
     pub time_ratio: f64,
 }
 
-/// For people, a row a step and precision.
+/// Table for people, a row a step and precision.
 pub fn actuator_table(points: &[ActuatorPoint]) -> Table<'_, ActuatorPoint> {
     Table::of(points)
         .people("step", |point| point.step_s)
@@ -80,7 +80,7 @@ pub fn actuator_table(points: &[ActuatorPoint]) -> Table<'_, ActuatorPoint> {
 /// Studies the stage, and adds the result to the study.
 ///
 /// # Errors
-/// What the watcher returns.
+/// Error of the watcher.
 pub fn add(study: &mut Study, repeats: usize, watcher: &mut dyn Watcher) -> Result<(), StudyError> {
     let torque = torque_nm()?;
     let exact = voltages::<f64>(&torque, 1)?;

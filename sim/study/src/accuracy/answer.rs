@@ -73,13 +73,13 @@ pub struct Answer {
     pub better: Option<Candidate>,
     /// Cheaper ones that fail, the costliest first; of each rung the costliest.
     pub cheaper: Vec<Candidate>,
-    /// On the target: all that fail, the cheapest first.
+    /// All that fail, the cheapest first, if costs on the target decide; otherwise empty.
     pub failed: Vec<Candidate>,
-    /// Without a fixed step: the longest step of every rung.
+    /// Longest step of every rung, if the question has no fixed step; otherwise empty.
     pub longest: Vec<Longest>,
-    /// If nothing meets the need: the nearest.
+    /// The nearest, if nothing meets the need.
     pub nearest: Option<Candidate>,
-    /// If nothing can meet the need: why.
+    /// Reason why nothing can meet the need, if nothing can.
     pub unreachable: Option<Unreachable>,
 }
 
@@ -145,7 +145,7 @@ fn better(candidates: &[Candidate], chosen: &Candidate) -> Option<Candidate> {
         .cloned()
 }
 
-/// Of each rung the costliest that is cheaper than `chosen` and fails.
+/// Costliest of each rung's candidates that are cheaper than `chosen` and fail.
 fn cheaper(candidates: &[Candidate], chosen: &Candidate) -> Vec<Candidate> {
     let mut cheaper: Vec<&Candidate> = candidates
         .iter()
@@ -206,7 +206,7 @@ fn nearest(candidates: &[Candidate]) -> Option<Candidate> {
         .cloned()
 }
 
-/// Whether the limit of the held torque is below the floor of holding, even at
+/// Returns whether the limit of the held torque is below the floor of holding, even at
 /// the shortest step.
 fn unreachable(points: &[Point], need: &Need, question: &Question<'_>) -> Option<Unreachable> {
     let limit = need

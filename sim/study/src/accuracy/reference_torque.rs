@@ -22,7 +22,7 @@ const ROUNDINGS: f64 = 4.0;
 /// True torque at the end of every step.
 #[derive(Clone, Debug)]
 pub struct ReferenceTorque {
-    /// At the end of step 0, 1, …, N·m.
+    /// Torque at the end of step 0, 1, …, N·m.
     at_ends_nm: Vec<f64>,
     /// Steps whose end is simultaneous with an event in f32, in order.
     ties: Vec<Tie>,
@@ -45,7 +45,7 @@ impl ReferenceTorque {
     /// and then.
     ///
     /// # Errors
-    /// What `poll` returns.
+    /// Error of `poll`.
     pub fn new<E>(
         scene: &StudyScene,
         sampling: &Sampling<'_>,

@@ -66,7 +66,7 @@ pub struct Refused {
     pub solver: &'static str,
     /// The convention.
     pub convention: &'static str,
-    /// Why.
+    /// Reason for the refusal.
     pub reason: &'static str,
 }
 
@@ -79,6 +79,6 @@ pub struct Skipped {
     pub convention: &'static str,
     /// The step, s.
     pub step_s: f64,
-    /// Why.
+    /// Reason why it was not studied.
     pub reason: &'static str,
 }

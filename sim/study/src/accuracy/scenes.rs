@@ -49,10 +49,10 @@ impl StudyScene {
         true_events(&self.settings, &self.motion, self.duration_s)
     }
 
-    /// As [`Self::true_events`], calling `poll` now and then.
+    /// [`Self::true_events`] with calls of `poll` now and then.
     ///
     /// # Errors
-    /// What `poll` returns.
+    /// Error of `poll`.
     pub fn true_events_while<E>(
         &self,
         poll: impl FnMut() -> Result<(), E>,

@@ -51,7 +51,7 @@ pub struct Plan {
 /// Runs a plan.
 ///
 /// # Errors
-/// What the watcher returns, or settings that cannot work together.
+/// Error of the watcher, or settings that cannot work together.
 pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<Study, StudyError> {
     let begun = Instant::now();
     let mut study = Study {
@@ -238,7 +238,7 @@ fn refused(scenes: &[StudyScene]) -> Vec<Refused> {
         .collect()
 }
 
-/// Why a scene is not studied at a step.
+/// Reason why a scene is not studied at a step.
 fn not_studied(sampling: &Sampling<'_>) -> Option<&'static str> {
     if sampling.steps() == 0 {
         Some("the step is longer than the scene")

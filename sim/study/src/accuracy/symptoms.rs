@@ -78,7 +78,7 @@ impl SymptomPoint {
     }
 }
 
-/// What is asked of the symptoms.
+/// Plan of the study of symptoms.
 #[derive(Clone, Copy, Debug)]
 pub struct SymptomPlan<'a> {
     /// The steps, s.
@@ -92,7 +92,7 @@ pub struct SymptomPlan<'a> {
 /// Studies every symptom in every form, and adds the results to the study.
 ///
 /// # Errors
-/// What the watcher returns, or a step that no device has.
+/// Error of the watcher, or a step that no device has.
 pub fn add(
     study: &mut Study,
     plan: &SymptomPlan<'_>,

@@ -87,7 +87,7 @@ pub struct Row {
     pub steps: u64,
 }
 
-/// Why there is no result.
+/// Reason why there is no result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TargetError<T> {
@@ -164,7 +164,7 @@ fn is_studied(subject: Subject, scenes: &[StudyScene]) -> bool {
 }
 
 impl Row {
-    /// What it is of, with the form in brackets: `cogwheel (space)`.
+    /// Name of the subject, with the form in brackets: `cogwheel (space)`.
     pub fn name(&self) -> String {
         match self.form {
             Some(form) => format!("{} ({form})", self.subject),
@@ -173,7 +173,7 @@ impl Row {
     }
 }
 
-/// Whether a point has the device's precision and tick.
+/// Returns whether a point has the device's precision and tick.
 fn is_on_the_device(point: &Point) -> bool {
     point.precision == Precision::F32.name()
         && (point.step_s - inputs::TICK_S).abs() < 1e-6 * inputs::TICK_S
@@ -220,7 +220,7 @@ fn note(study: &mut Study, scene: &StudyScene, solver: &str, cost: &Cost) {
 /// Cost of a subject.
 #[derive(Default)]
 struct SubjectCost {
-    /// On the scenes of the study.
+    /// Cost on the scenes of the study.
     usual: Cost,
     all: Cost,
     worst_on: String,

@@ -40,7 +40,7 @@ pub struct Cost {
 /// may cancel.
 ///
 /// # Errors
-/// What `after_each` returns, or `E` from settings that cannot work together.
+/// Error of `after_each`, or `E` from settings that cannot work together.
 pub fn time<E: From<SettingsError>>(
     scene: &StudyScene,
     sampling: &Sampling<'_>,

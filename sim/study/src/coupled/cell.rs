@@ -21,7 +21,7 @@ const SETTLING: f64 = 0.7;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// At rest.
+    /// A shaft at rest.
     Quiet,
     /// A decaying oscillation.
     Settles,

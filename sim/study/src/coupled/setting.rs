@@ -10,7 +10,7 @@ use std::path::Path;
 /// The device's tick, s.
 pub(super) const TICK_S: f64 = 5e-5;
 
-/// When the hand begins to stop, and when it rests, s.
+/// Time at which the hand begins to stop, and time at which it rests, s.
 const STOPS_S: f64 = 0.3;
 const RESTS_S: f64 = 0.35;
 
@@ -28,10 +28,10 @@ pub const STIFFNESSES: [f64; 14] = [
 /// Damping of the cuff, N·m·s/rad; the plausible range begins at 0.5.
 pub const DAMPINGS: [f64; 6] = [0.0, 0.05, 0.1, 0.2, 0.5, 1.0];
 
-/// From the commanded to the acting torque.
+/// Lag from the commanded to the acting torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lag {
-    /// Without delay, and held for a tick.
+    /// No delay; the torque is held for a tick.
     Ideal,
     /// A motor whose current loop has this bandwidth, Hz.
     Motor(f64),
@@ -171,7 +171,7 @@ pub struct Setting {
     pub stiffness_nm_per_rad: f64,
     /// Damping of the cuff, N·m·s/rad.
     pub damping_nms_per_rad: f64,
-    /// From the commanded to the acting torque.
+    /// Lag from the commanded to the acting torque.
     pub lag: Lag,
     /// The gear.
     pub gear: Gear,

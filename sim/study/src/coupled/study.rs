@@ -58,7 +58,7 @@ pub struct CoupledStudy {
     pub wall_s: f64,
 }
 
-/// Why a study has no result.
+/// Reason why a study has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum CoupledError {
     /// The watcher cancelled it.
@@ -72,7 +72,7 @@ pub enum CoupledError {
 /// Runs the study.
 ///
 /// # Errors
-/// What the watcher returns.
+/// Error of the watcher.
 pub fn run(watcher: &mut dyn Watcher) -> Result<CoupledStudy, CoupledError> {
     let begun = Instant::now();
     let map = map();

@@ -64,7 +64,7 @@ pub struct Dropped {
     /// Difference of the torque from that of the whole scene; `None` if the
     /// run failed.
     pub difference: Option<Difference>,
-    /// Why the run failed.
+    /// Reason why the run failed.
     pub failure: Option<String>,
 }
 
@@ -80,7 +80,7 @@ pub(super) fn set_count(scene: &Scene) -> usize {
     sets(&needs(&scene.effects())).count()
 }
 
-/// For each effect the indices of those that it needs.
+/// Indices of the effects that each effect needs.
 fn needs(effects: &[&'static Effect]) -> Vec<Set> {
     effects
         .iter()

@@ -29,11 +29,11 @@ pub struct BuildUp {
 /// time, s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RungTorques {
-    /// What came last; empty for the joint alone.
+    /// The effect added last; empty for the joint alone.
     pub added: &'static str,
-    /// Of the model.
+    /// Torque of the model.
     pub model_nm: Line,
-    /// At the hand.
+    /// Torque at the hand.
     pub hand_nm: Line,
 }
 
@@ -45,7 +45,7 @@ pub struct Rung {
     /// Measures of the run, unless it failed.
     #[serde(flatten)]
     pub measured: Option<Measured>,
-    /// Why the run failed.
+    /// Reason why the run failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
@@ -75,7 +75,7 @@ pub struct Measured {
 /// Builds `scene` up; `None` without a joint or a plant.
 ///
 /// # Errors
-/// What the watcher returns.
+/// Error of the watcher.
 pub(super) fn build_up(
     scene: &Scene,
     meter: &Meter,

@@ -67,7 +67,7 @@ pub fn effects_table(rows: &[Row]) -> Table<'_, Row> {
         .column("failure", Row::failure)
 }
 
-/// What an effect adds to a step, ns; of a cost that is lost in the timings
+/// Time that an effect adds to a step, ns; of a cost that is lost in the timings
 /// its bound.
 fn cost(added: &AddedTime) -> String {
     match added.ns_per_step {

@@ -6,7 +6,7 @@ use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns};
 use crepitus_scene::trace::SymptomEvent;
 use crepitus_scene::{RunError, Scene, Summary};
 
-/// Why a run has no result.
+/// Reason why a run has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(super) enum Ended {
     /// `on_torque` ended the run.
@@ -23,7 +23,7 @@ pub(super) enum Ended {
 /// A completed run.
 #[derive(Debug)]
 pub(super) struct Felt {
-    /// What the run says of itself.
+    /// Summary of the run.
     pub(super) summary: Summary,
     /// Events of the joint, and those of symptoms without the play under them.
     pub(super) events: u64,

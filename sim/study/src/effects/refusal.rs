@@ -8,7 +8,7 @@ use std::fmt;
 /// The most ticks of a scene: the torque at each is stored, 8 bytes a tick.
 pub const MOST_TICKS: u64 = 40_000_000;
 
-/// Why a scene cannot be studied.
+/// Reason why a scene cannot be studied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Refusal {
@@ -53,7 +53,7 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Why a scene cannot be studied, or `None`.
+/// Reason why a scene cannot be studied, or `None`.
 pub fn refusal(scene: &Scene) -> Option<Refusal> {
     let ticks = step_count(scene);
     if scene.solver == SolverChoice::Reference {

@@ -47,7 +47,7 @@ pub struct EffectsStudy {
 /// The scene or one of its variants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// How it differs from the scene.
+    /// Kind of change to the scene.
     pub change: Change,
     /// The effect; empty for the scene itself.
     pub effect: &'static str,
@@ -70,7 +70,7 @@ pub enum Outcome {
     Ran(Ran),
     /// It failed.
     Failed {
-        /// Why.
+        /// Reason why the run failed.
         failure: String,
     },
 }
@@ -118,7 +118,7 @@ impl Row {
         self.ran().and_then(|ran| ran.added.as_ref())
     }
 
-    /// Why the run failed.
+    /// Reason why the run failed.
     pub fn failure(&self) -> Option<&str> {
         match &self.outcome {
             Outcome::Ran(_) => None,

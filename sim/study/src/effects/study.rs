@@ -29,7 +29,7 @@ pub struct Plan {
     pub tolerance: Option<Tolerance>,
 }
 
-/// Why a study has no result.
+/// Reason why a study has no result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum EffectsError {
@@ -53,7 +53,7 @@ pub(super) struct WholeRun {
 /// Runs a plan.
 ///
 /// # Errors
-/// What the watcher returns, or why the scene cannot be studied. A failed
+/// Error of the watcher, or the reason why the scene cannot be studied. A failed
 /// variant is a row with the reason.
 pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<EffectsStudy, EffectsError> {
     let begun = Instant::now();

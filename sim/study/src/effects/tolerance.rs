@@ -64,7 +64,7 @@ impl Criterion {
 }
 
 impl Tolerance {
-    /// Whether a difference is within every limit.
+    /// Returns whether a difference is within every limit.
     pub fn holds(&self, difference: &Difference) -> bool {
         self.limits()
             .iter()

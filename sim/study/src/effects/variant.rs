@@ -5,7 +5,7 @@ use crepitus_plant::effects::EFFECTS;
 use crepitus_scene::Scene;
 use serde::Serialize;
 
-/// How a variant differs from the scene.
+/// Kind of change from the scene to a variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Change {
@@ -31,7 +31,7 @@ impl Change {
 /// A variant of a scene.
 #[derive(Clone, Debug)]
 pub struct Variant {
-    /// How it differs from the scene.
+    /// Kind of change to the scene.
     pub change: Change,
     /// The effect.
     pub effect: &'static str,

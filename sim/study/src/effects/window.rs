@@ -33,14 +33,14 @@ const LONGEST_S: f64 = 0.5;
 /// that change it most.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HandTorque {
-    /// Where it begins, s.
+    /// Start of the window, s.
     pub from_s: f64,
-    /// Where it ends, s.
+    /// End of the window, s.
     pub to_s: f64,
     /// Whether the slow course of the scene's torque, a parabola, is taken
     /// from all lines.
     pub less_trend: bool,
-    /// Of the scene, N·m, against time, s.
+    /// Torque of the scene, N·m, against time, s.
     pub scene_nm: Line,
     /// Those that differ most first.
     pub variants: Vec<VariantTorque>,
@@ -49,9 +49,9 @@ pub struct HandTorque {
 /// One of the variants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VariantTorque {
-    /// What it is called.
+    /// Name of the variant.
     pub name: String,
-    /// What was done to the scene.
+    /// Kind of change to the scene.
     pub change: Change,
     /// N·m, against time, s.
     pub torque_nm: Line,
@@ -154,7 +154,7 @@ fn window(whole: &WholeRun, candidates: &[Candidate<'_>], tick_s: f64) -> (usize
     (from, (from + length).min(ticks))
 }
 
-/// For each bin the sum of the shares that each difference has there.
+/// Sum of the shares that the differences have in each bin.
 fn shares(candidates: &[Candidate<'_>]) -> Vec<f64> {
     let mut shares: Vec<f64> = Vec::new();
     for candidate in candidates {

@@ -18,13 +18,13 @@ pub struct Case {
     pub name: &'static str,
     /// Its title.
     pub title: &'static str,
-    /// Why it is hard.
+    /// Reason why it is hard.
     pub hard: &'static str,
     /// Source of the case and of its limits.
     pub source: &'static str,
     /// Hours of simulated time: only with `--long`.
     pub long: bool,
-    /// Which subjects must hold; the others are only shown.
+    /// Subjects that must hold; the others are only shown.
     pub must: fn(Subject) -> bool,
     /// The trials of a subject; empty if the case does not apply to it.
     pub trials: fn(Subject) -> Vec<Trial>,

@@ -39,9 +39,9 @@ pub fn common_bounds() -> [String; 3] {
 /// A limit in each precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// In f64.
+    /// Limit in f64.
     pub f64: f64,
-    /// In f32.
+    /// Limit in f32.
     pub f32: f64,
 }
 
@@ -54,7 +54,7 @@ impl Limits {
         }
     }
 
-    /// In `precision`.
+    /// Returns the limit in `precision`.
     pub fn of(&self, precision: Precision) -> f64 {
         match precision {
             Precision::F32 => self.f32,
@@ -63,7 +63,7 @@ impl Limits {
     }
 }
 
-/// Which events are counted.
+/// Events that are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Counted {
     /// All.
@@ -94,19 +94,19 @@ pub enum Criterion {
     Count {
         /// The counted events.
         what: Counted,
-        /// At least.
+        /// Smallest number allowed.
         least: u64,
-        /// At most.
+        /// Largest number allowed.
         most: u64,
     },
     /// No step has more events.
     EventsPerStep {
-        /// At most.
+        /// Largest number allowed.
         most: u32,
     },
     /// Events per second, over the whole run.
     EventsPerSecond {
-        /// At most.
+        /// Largest rate allowed, 1/s.
         most: f64,
     },
     /// The frequency of breaks is that of the closed form.
@@ -119,7 +119,7 @@ pub enum Criterion {
     /// Standard deviation of the time from break to break, relative to its
     /// mean.
     IntervalVariation {
-        /// At most.
+        /// Largest ratio allowed.
         most: f64,
     },
     /// Every slip lasts this long.
@@ -136,7 +136,7 @@ pub enum Criterion {
     },
     /// From `from_s` on the torque stays in a band.
     TorqueWithin {
-        /// From when, s.
+        /// Start of the judged part of the run, s.
         from_s: f64,
         /// N·m.
         low_nm: f64,
@@ -148,14 +148,14 @@ pub enum Criterion {
     /// From `from_s` on the torque moves by so much at most, from its lowest to its
     /// highest.
     TorqueQuiet {
-        /// From when, s.
+        /// Start of the judged part of the run, s.
         from_s: f64,
         /// N·m.
         most_nm: f64,
     },
     /// From `from_s` on every torque is the same, bit for bit.
     TorqueStays {
-        /// From when, s.
+        /// Start of the judged part of the run, s.
         from_s: f64,
     },
     /// The last torque is the first.
@@ -191,7 +191,7 @@ pub enum Criterion {
     },
     /// Number of steps that end with a velocity below the smallest normal number.
     Subnormals {
-        /// At most.
+        /// Largest number allowed.
         most: u64,
     },
     /// Change of torque from one step to the next.
@@ -212,7 +212,7 @@ pub enum Criterion {
     },
     /// The first event after this time is a break, and on time.
     FirstBreakAfter {
-        /// Since the start, s.
+        /// Time since the start, s.
         from_s: f64,
         /// Its due time, s.
         at_s: f64,
@@ -226,15 +226,15 @@ pub enum Criterion {
     },
     /// Ticks in which the turn-back guard has switched the torque off.
     GuardTicks {
-        /// At least.
+        /// Smallest number allowed.
         least: u64,
-        /// At most.
+        /// Largest number allowed.
         most: u64,
     },
     /// Energy that the hand gets back over any time, beyond that of sampling,
     /// (½ + d)·kr·h·∫Ω²dt, as a share of the bound Ts²/2kr.
     Returned {
-        /// At most.
+        /// Largest share allowed.
         most: f64,
     },
     /// The symptom's own events are those of its reference, each within a tolerance.
@@ -249,51 +249,51 @@ pub enum Criterion {
     },
     /// The symptoms' own events are these, in this order.
     Words(&'static [Word]),
-    /// When something happens to the symptoms for the first time.
+    /// Time of the symptoms' first event of one kind.
     FirstWord {
-        /// What.
+        /// Kind of event.
         word: Word,
-        /// When it is due, s.
+        /// Time at which it is due, s.
         at_s: f64,
         /// Seconds.
         within_s: Limits,
     },
-    /// How often something happens to the symptoms.
+    /// Number of the symptoms' events of one kind.
     WordCount {
-        /// What.
+        /// Kind of event.
         word: Word,
-        /// At least.
+        /// Smallest number allowed.
         least: u64,
-        /// At most.
+        /// Largest number allowed.
         most: u64,
     },
     /// Energy that the hand gets back over any time from the springs of symptoms, beyond
     /// that of sampling, (½ + d)·σ·h·∫Ω²dt, as a share of T²/2σ.
     SpringsReturn {
-        /// At most.
+        /// Largest share allowed.
         most: f64,
     },
     /// Energy that the hand gets back in any two seconds.
     NetReturned {
-        /// At most, J.
+        /// Largest energy allowed, J.
         most_j: f64,
     },
-    /// What the vibration actuator does.
+    /// Range of a measured quantity of the vibration actuator.
     Actuator {
-        /// What is measured.
+        /// Measured quantity.
         what: ActuatorMeasure,
-        /// From when, s; without it in the whole run.
+        /// Start of the judged part of the run, s; without it the whole run is judged.
         from_s: Option<f64>,
-        /// At least, in the unit of what is measured.
+        /// Smallest value allowed, in the unit of what is measured.
         least: f64,
-        /// At most.
+        /// Largest value allowed, in the same unit.
         most: f64,
     },
     /// Every attempt is refused.
     Refused,
 }
 
-/// What is measured of the vibration actuator.
+/// Measured quantity of the vibration actuator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ActuatorMeasure {
     /// Root mean square of the shell's acceleration, m/s².
@@ -315,7 +315,7 @@ pub enum ActuatorMeasure {
 }
 
 impl ActuatorMeasure {
-    /// In words, and the unit.
+    /// Returns the quantity in words, and the unit.
     pub fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::AccelerationRms => ("the shell's acceleration", "m/s² rms"),
@@ -331,7 +331,7 @@ impl ActuatorMeasure {
 }
 
 impl Criterion {
-    /// Whether it applies to the reference, which has no steps and provides the
+    /// Returns whether it applies to the reference, which has no steps and provides the
     /// true events.
     pub fn suits_the_reference(&self) -> bool {
         !matches!(

@@ -245,7 +245,7 @@ impl Input {
         }
     }
 
-    /// Whether it applies to the reference, which takes no samples.
+    /// Returns whether it applies to the reference, which takes no samples.
     pub(super) fn suits_the_reference(&self) -> bool {
         match self {
             Self::Sampled { .. } => true,
@@ -254,7 +254,7 @@ impl Input {
         }
     }
 
-    /// Whether the joint needs the check of its input that the device has.
+    /// Returns whether the joint needs the check of its input that the device has.
     pub(super) fn needs_guard(&self) -> bool {
         match self {
             Self::Faulty { .. } => true,
@@ -263,7 +263,7 @@ impl Input {
         }
     }
 
-    /// Whether each step is that of the motion to f64 precision: without an
+    /// Returns whether each step is that of the motion to f64 precision: without an
     /// encoder and without catching up.
     pub(super) fn is_exact(&self) -> bool {
         !matches!(self, Self::Encoder { .. } | Self::Faulty { .. })

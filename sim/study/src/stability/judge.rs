@@ -15,7 +15,7 @@ use crepitus_scene::scene::Precision;
 /// Factor of the cycle rate beyond which it is another motion.
 const ANOTHER_MOTION: f64 = 2.0;
 
-/// Nothing is right of what was not looked at.
+/// Failure of a criterion whose torque was not observed: what was not looked at is not right.
 const NO_TORQUE: Failure = Failure::Broken("there is no torque from then on");
 
 /// Observations for a criterion.

@@ -27,7 +27,7 @@ pub struct Plan {
 /// One subject in one case.
 #[derive(Clone, Debug)]
 pub struct Cell {
-    /// Which subject.
+    /// The subject.
     pub subject: Subject,
     /// Whether it must hold: the tool and the tests fail if it does not.
     pub must_hold: bool,
@@ -78,7 +78,7 @@ impl Matrix {
 /// Runs a plan.
 ///
 /// # Errors
-/// What the watcher returns, or a trial whose settings are refused.
+/// Error of the watcher, or a trial whose settings are refused.
 pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<Matrix, StudyError> {
     let begun = Instant::now();
     let mut work = Work {

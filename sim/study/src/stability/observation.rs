@@ -60,9 +60,9 @@ pub(super) struct Observation {
     pub(super) guard_ticks: u64,
     /// Attempts that were accepted by mistake.
     pub(super) accepted: Vec<&'static str>,
-    /// Of symptoms besides crepitus.
+    /// Observation of symptoms besides crepitus.
     pub(super) symptoms: SymptomsSeen,
-    /// Of the vibration actuator.
+    /// Observation of the vibration actuator.
     pub(super) actuator: ActuatorSeen,
 }
 
@@ -70,7 +70,7 @@ pub(super) struct Observation {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ActuatorSeen {
     pub(super) whole: ActuatorPart,
-    /// From the time that the trial sets.
+    /// Observation of the run from the time that the trial sets.
     pub(super) late: ActuatorPart,
     pub(super) last_v: f64,
 }
@@ -88,7 +88,7 @@ pub(super) struct ActuatorPart {
     pub(super) volts: f64,
     pub(super) volts_a_tick: f64,
     pub(super) shaft_rad_s: f64,
-    /// Of the loop from the actuator to the encoder, at gain 1: largest gain, and largest
+    /// Largest gain of the loop from the actuator to the encoder, at gain 1, and the largest
     /// where it is in phase.
     pub(super) loop_gain: f64,
     pub(super) loop_in_phase: f64,
@@ -128,7 +128,7 @@ impl Observation {
         self.mirrored_bits.add(bits::<F>(-torque_nm));
     }
 
-    /// Whether the run itself detects that its step is too long.
+    /// Returns whether the run itself detects that its step is too long.
     pub(super) fn is_flagged(&self) -> bool {
         self.unresolved_steps > 0
     }
@@ -202,9 +202,9 @@ pub(super) struct Tally {
     pub(super) most_in_step: u32,
     pub(super) last_s: Option<f64>,
     pub(super) breaks_at_rest: u64,
-    /// From break to break in one sense, s.
+    /// Times from break to break in one sense, s.
     pub(super) cycles: Spread,
-    /// From break to stick, s.
+    /// Times from break to stick, s.
     pub(super) slips: Range,
     last_break: Option<(f64, Sense)>,
     slip_began_s: Option<f64>,

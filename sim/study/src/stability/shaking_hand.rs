@@ -37,9 +37,9 @@ pub(super) struct Tick {
 /// The largest share of the bound's first term that was returned.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Returned {
-    /// As the device renders it.
+    /// Share as the device renders the joint.
     pub(super) guarded: f64,
-    /// Without the turn-back guard.
+    /// Share without the turn-back guard.
     pub(super) unguarded: f64,
 }
 

@@ -9,7 +9,7 @@ use crepitus_scene::scene::Precision;
 /// without.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rung {
-    /// In steps.
+    /// Rung of the ladder, in steps.
     Ladder(Solver),
     /// Event by event on the true motion, in f64.
     Reference,
@@ -30,7 +30,7 @@ impl Rung {
         }
     }
 
-    /// Why it has no meaning under a convention, or `None`.
+    /// Reason why it has no meaning under a convention, or `None`.
     pub fn refusal(self, convention: Convention) -> Option<&'static str> {
         match self {
             Self::Ladder(solver) => solver.refusal(convention),
@@ -38,7 +38,7 @@ impl Rung {
         }
     }
 
-    /// Whether it needs the prescribed motion itself.
+    /// Returns whether it needs the prescribed motion itself.
     pub fn needs_exact_motion(self) -> bool {
         match self {
             Self::Ladder(solver) => solver.needs_exact_motion(),
@@ -54,7 +54,7 @@ impl Rung {
         }
     }
 
-    /// Why it has no meaning in f32, or `None`.
+    /// Reason why it has no meaning in f32, or `None`.
     pub fn single_refusal(self) -> Option<&'static str> {
         match self {
             Self::Ladder(solver) => solver.single_refusal(),
@@ -68,7 +68,7 @@ impl Rung {
 pub struct Subject {
     /// The rung.
     pub solver: Rung,
-    /// How a slip ends.
+    /// Convention for the end of a slip.
     pub convention: Convention,
     /// Its precision.
     pub precision: Precision,
@@ -93,7 +93,7 @@ impl Subject {
         all
     }
 
-    /// Whether it is the firmware's: `frozen`, the break located, in f32.
+    /// Returns whether it is the firmware's: `frozen`, the break located, in f32.
     pub fn is_firmware(self) -> bool {
         self.convention == Convention::Frozen
             && self.solver == Rung::Ladder(Solver::ExactEvents)

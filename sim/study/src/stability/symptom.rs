@@ -63,7 +63,7 @@ pub(super) fn observe(
     Ok(seen)
 }
 
-/// Which of these are accepted.
+/// Observes which of the attempts are accepted.
 pub(super) fn attempt(attempts: &[RefusedSymptoms]) -> Observation {
     let accepts =
         |attempt: &&RefusedSymptoms| Given::settings_of(&attempt.symptoms).check(None).is_ok();
@@ -116,7 +116,7 @@ impl Here<'_> {
         seen.add_torque::<F>(torque_nm);
     }
 
-    /// With the torque at the end of each step, N·m.
+    /// Runs the device in steps; returns the observation with the torque at the end of each step, N·m.
     fn stepped<F: Real>(&self) -> Result<(Observation, Vec<f64>), SettingsError> {
         let (run, step_s) = (self.run, self.run.step_s);
         let mut view = View::<F>::new(run, &self.sampling)?;
@@ -227,7 +227,7 @@ fn slew_nm<F: Real>(step_s: f64) -> F {
     F::from_f64(SLEW_NM_PER_S * step_s)
 }
 
-/// How the device sees the joint: its true motion, or the encoder's counts.
+/// The device's view of the joint: its true motion, or the encoder's counts.
 struct View<'a, F> {
     walk: crate::sampling::Walk<'a>,
     chunk: Vec<(f64, ShaftStep<F>)>,

@@ -31,7 +31,7 @@ pub enum Verdict {
     Fails {
         /// The failure.
         what: Failure,
-        /// Since the start of the trial, s; `None` where it has no time.
+        /// Time since the start of the trial, s; `None` where the failure has no time.
         at_s: Option<f64>,
         /// Whether the run itself gives the warning.
         flagged: bool,
@@ -58,7 +58,7 @@ pub enum Failure {
 }
 
 impl Verdict {
-    /// Whether every criterion is met.
+    /// Returns whether every criterion is met.
     pub fn holds(&self) -> bool {
         matches!(self, Self::Holds(_))
     }
@@ -72,7 +72,7 @@ impl Verdict {
         }
     }
 
-    /// Whether the run itself gives a warning.
+    /// Returns whether the run itself gives a warning.
     pub fn is_flagged(&self) -> bool {
         match self {
             Self::Holds(_) => false,

@@ -16,12 +16,12 @@ use crepitus_scene::reference::symptoms::SymptomError;
 /// Times within this share of a step are one.
 const SAME_TIME: f64 = 1e-6;
 
-/// What the reference says of one motion.
+/// The reference's events and torques for one motion.
 pub(crate) struct Truth {
     pub(crate) events: Vec<SymptomEvent>,
     /// Steps from one torque to the next.
     pub(crate) stride: u64,
-    /// From the first on, N·m.
+    /// Torque at the end of every `stride`th step, from the first on, N·m.
     torques_nm: Vec<f64>,
 }
 

@@ -3,12 +3,12 @@
 use crate::matching::{Alike, Matching, match_alike};
 use crepitus_model::render::effects::symptom::Word;
 
-/// What happens to a symptom, and when.
+/// Event of a symptom, with its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SymptomEvent {
-    /// Since the start of the run, s.
+    /// Time since the start of the run, s.
     pub time_s: f64,
-    /// What.
+    /// Kind of event.
     pub word: Word,
     /// Velocity of the joint, rad/s.
     pub omega_rad_s: f64,
@@ -45,7 +45,7 @@ const REST_RAD_S: f64 = 1e-9;
 const SAME_NM: f64 = 1e-9;
 
 impl SymptomEvent {
-    /// Whether a tooth passes a joint at rest without any change: rounding decides
+    /// Returns whether a tooth passes a joint at rest without any change: rounding decides
     /// whether that is an event.
     fn is_silent(&self) -> bool {
         matches!(self.word, Word::Give | Word::Catch)
@@ -54,7 +54,7 @@ impl SymptomEvent {
     }
 }
 
-/// Only what the symptom itself does, without the play under it and without what
+/// Events of the symptom itself, without those of the play under it and without what
 /// nobody can feel.
 pub fn own(events: impl IntoIterator<Item = SymptomEvent>) -> Vec<SymptomEvent> {
     events

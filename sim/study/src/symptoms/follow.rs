@@ -11,7 +11,7 @@ use crepitus_model::render::input_check::Checked;
 use crepitus_model::render::position::{Position, Scale, Sight, Travel};
 use crepitus_model::{Real, SettingsError, ShaftStep};
 
-/// How a law sees a joint whose true motion it knows.
+/// Timing and sight of a law that knows the joint's true motion.
 pub fn timing(step_s: f64) -> Timing {
     Timing {
         step_s,

@@ -109,7 +109,7 @@ impl Given {
 }
 
 impl Keys for Given {
-    /// Where it is not given, the device's default: the reference has its own.
+    /// The given number, or else the device's default: the reference has its own.
     fn number(&self, key: &str) -> Option<f64> {
         let given = self.numbers.iter().find(|(known, _)| *known == key);
         given.map(|(_, number)| *number).or_else(|| {

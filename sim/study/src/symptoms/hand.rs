@@ -10,7 +10,7 @@ use std::fmt;
 /// A prescribed motion of the joint.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Hand {
-    /// At one velocity.
+    /// Motion at one velocity.
     Constant {
         /// Angle at the start, deg.
         from_deg: f64,
@@ -34,17 +34,17 @@ pub enum Hand {
         /// f, Hz.
         frequency_hz: f64,
     },
-    /// At one velocity to an angle, and from then on trembling about it.
+    /// Motion at one velocity to an angle, and from then on trembling about it.
     Tremble {
         /// Angle at the start, deg.
         from_deg: f64,
         /// Velocity, deg/s.
         deg_s: f64,
-        /// Where it trembles, deg.
+        /// Angle about which it trembles, deg.
         at_deg: f64,
-        /// By how much to either side, deg.
+        /// Amplitude of the tremor to either side, deg.
         by_deg: f64,
-        /// How often, Hz.
+        /// Frequency of the tremor, Hz.
         frequency_hz: f64,
     },
     /// Wandering about an angle, at velocities that are linear between random ones.
@@ -161,10 +161,10 @@ impl Hand {
     }
 }
 
-/// For four seconds, and then at rest.
+/// Motion that wanders for four seconds and then rests.
 fn wander(about_deg: f64, deg_s: f64, seed: u64) -> Motion {
     const END_S: f64 = 4.0;
-    /// How fast it comes back to the middle, 1/s.
+    /// Rate at which it comes back to the middle, 1/s.
     const RETURN_HZ: f64 = 3.0;
     let mut random = Random::new(seed);
     let (mut time_s, mut angle_deg, mut speed) = (0.0, about_deg, 0.0);

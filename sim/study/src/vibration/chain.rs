@@ -14,9 +14,9 @@ crepitus_model::named! {
         BareKnee => "a bare diseased knee",
         /// The device, its actuator silent.
         MotorAlone => "the motor alone",
-        /// And the actuator, with the ringing of a bone on the motor if the scene has one.
+        /// The motor and the actuator, with the ringing of a bone on the motor if the scene has one.
         Actuator => "and the actuator",
-        /// And the ringing of a bone on the actuator.
+        /// The motor and the actuator, with the ringing of a bone on the actuator.
         Ringing => "and a bone's ringing on it",
         /// The actuator on the brace instead.
         OnBrace => "the actuator on the brace",
@@ -66,7 +66,7 @@ impl Step {
     }
 }
 
-/// Whether a knee without a device has this.
+/// Returns whether a knee without a device has this.
 fn is_of_bare_knee(listed: &Listed) -> bool {
     let name = listed.effect.name;
     match listed.effect.part {

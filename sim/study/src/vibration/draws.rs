@@ -10,13 +10,13 @@ use crepitus_spectrum::cross::Cross;
 use serde::Serialize;
 use std::fmt;
 
-/// How far off each number may be.
+/// Largest relative deviation of each number.
 pub const SPREAD: f64 = 0.3;
 
 /// Levels that are asked for, over the nominal one.
 pub const WITHIN: (f64, f64) = (0.6, 1.7);
 
-/// What varies.
+/// Parameters that vary, by effect.
 const VARIES: [(&str, &[&str]); 4] = [
     ("cuff", &["stiffness_nm_per_rad", "damping_nms_per_rad"]),
     (
@@ -36,12 +36,12 @@ const VARIES: [(&str, &[&str]); 4] = [
     ("hand", &["palm_factor"]),
 ];
 
-/// What comes of it.
+/// Result of the draws.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Draws {
-    /// How many.
+    /// Number of draws.
     pub count: usize,
-    /// How many of them could not be run to the end; they are not within.
+    /// Number of draws that could not be run to the end; they are not within.
     pub failed: usize,
     /// Level over that of the nominal device: the 5 % quantile, the median, the 95 % quantile.
     pub level: [f64; 3],

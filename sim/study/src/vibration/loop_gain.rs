@@ -51,7 +51,7 @@ pub const HANDS: [&str; 4] = ["nobody", "light", "firm", "whole-arm"];
 /// Margin of one loop.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Margin {
-    /// What holds the shell.
+    /// Hand that holds the shell.
     pub hand: &'static str,
     /// Stiffness of the cuff, N·m/rad.
     pub cuff_nm_per_rad: f64,
@@ -61,7 +61,7 @@ pub struct Margin {
     pub largest: f64,
     /// Gain up to which it is stable.
     pub stable_to: f64,
-    /// Where it would oscillate beyond, Hz.
+    /// Frequency at which it would oscillate beyond that gain, Hz.
     pub at_hz: f64,
 }
 
@@ -100,7 +100,7 @@ struct Linear {
     flexure: (f64, f64),
     stick: f64,
     actuator: VibrationActuatorSettings,
-    /// What the device believes of it.
+    /// The actuator's settings as the device believes them to be.
     believed: VibrationActuatorSettings,
 }
 

@@ -1,4 +1,4 @@
-//! What a hand can feel.
+//! Vibration threshold of a hand.
 //!
 //! The threshold of vibration for a grasped cylinder is a U over frequency with its
 //! minimum at 150 to 200 Hz (Brisben et al. 1999: below 0.01 µm in the most sensitive
@@ -12,7 +12,7 @@ use std::f64::consts::{SQRT_2, TAU};
 /// Least displacement that is felt, m peak.
 const DISPLACEMENT_M: f64 = 0.03e-6;
 
-/// Where it is that, Hz.
+/// Frequency range with this least displacement, Hz.
 const MINIMUM_HZ: (f64, f64) = (160.0, 200.0);
 
 /// The acceleration that is just felt at this frequency, m/s² rms.

@@ -10,11 +10,11 @@ use crepitus_scene::{Scene, Walk};
 /// Those of one run, once it has settled.
 #[derive(Clone, Debug)]
 pub(super) struct Kept {
-    /// From one to the next, s.
+    /// Time from one value to the next, s.
     pub(super) step_s: f64,
     /// The joint's torque, N·m.
     pub(super) torque: Vec<f64>,
-    /// What the hand or the fixture feels, N·m.
+    /// Torque that the hand or the fixture feels, N·m.
     pub(super) felt: Vec<f64>,
     /// Acceleration of the palm, m/s²; nothing without one.
     pub(super) acceleration: Vec<f64>,

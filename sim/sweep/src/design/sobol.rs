@@ -83,7 +83,7 @@ pub(super) fn coordinate(seed: u64, point: u64, axis: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// Of SciPy 1.17's `scipy.stats.qmc.Sobol(d=21, scramble=False)`, points 1, 6, 511
+    /// Compares with SciPy 1.17's `scipy.stats.qmc.Sobol(d=21, scramble=False)`, points 1, 6, 511
     /// and 1000, times 2^30: what another program has for the same set of numbers.
     #[test]
     fn the_points_are_those_of_another_program() {

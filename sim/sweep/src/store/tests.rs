@@ -30,7 +30,7 @@ fn finish(store: &mut Store) -> Result<Written, TableError> {
     store.finish(Format::Csv, &mut |_| true)
 }
 
-/// Whether a table has all ten rows in their order.
+/// Returns whether a table has all ten rows in their order.
 fn is_whole(table: &Written) -> bool {
     let rows = (0..10).fold("index,x,failure\n".to_owned(), |rows, i| {
         rows + &format!("{i},{i},\n")

@@ -37,7 +37,7 @@ impl Particular {
         }
     }
 
-    /// For u = gain·(s·φ + μ·s·Ω) − offset on a piece of the motion.
+    /// Solution for u = gain·(s·φ + μ·s·Ω) − offset on a piece of the motion.
     pub(super) fn of_stretch(
         piece: &Piece,
         (gain, shift_s, offset): (f64, f64, f64),
@@ -144,7 +144,7 @@ impl DelayedResponse {
         }
     }
 
-    /// From now on the input has this particular solution.
+    /// Sets the particular solution that the input has from now on.
     pub(super) fn input(&mut self, at: &Instant, particular: Particular) {
         let y_start = self
             .segments

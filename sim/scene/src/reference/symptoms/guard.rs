@@ -80,7 +80,7 @@ impl Guard {
         }
     }
 
-    /// Whose c is the sum of terms of this size.
+    /// The same condition with a c that is the sum of terms of this size.
     pub(super) fn of_terms(self, terms: f64) -> Self {
         Self { terms, ..self }
     }
@@ -98,7 +98,7 @@ impl Guard {
 /// The end of a state of a symptom.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum When {
-    /// At a time, s.
+    /// A time is reached, s.
     At(f64),
     /// A condition falls below zero; to touch zero is not enough.
     Crosses(Guard),

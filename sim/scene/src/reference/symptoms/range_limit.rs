@@ -35,7 +35,7 @@ pub(super) struct Wall {
     /// Tcap, N·m.
     cap: f64,
     is_in: bool,
-    /// At the cap, while the torque is at the limit.
+    /// Whether the limit is at the cap, while the torque is at the limit.
     capped: bool,
     play: Play,
 }

@@ -92,14 +92,14 @@ pub(super) struct Runner<'a, L: Law> {
     watches: Watches<L::Action>,
     /// Actions since the time last advanced.
     crowd: u32,
-    /// How far the search was moved on last, because there were too many, s.
+    /// Time by which the search was last moved on because there were too many actions, s.
     moved_s: f64,
 }
 
 /// State of the search for the next action.
 #[derive(Clone, Copy, Debug)]
 struct Ahead<A> {
-    /// From when on nothing is known, s.
+    /// Time from which on nothing is known, s.
     from_s: f64,
     begun: bool,
     /// Length of the next window, as a multiple of the first.

@@ -47,7 +47,7 @@ impl Cycles {
         f64::from(self.worst) / TICK_CYCLES
     }
 
-    /// Whether the worst step fits the share of a tick that it may take.
+    /// Returns whether the worst step fits the share of a tick that it may take.
     pub fn fits(&self) -> bool {
         self.worst_share() <= STEP_SHARE
     }
@@ -91,7 +91,7 @@ impl Mark {
 }
 
 impl Candidate {
-    /// Whether the need is met, and the worst step on the target fits its
+    /// Returns whether the need is met, and the worst step on the target fits its
     /// share of a tick.
     pub fn meets(&self) -> bool {
         self.unmatched.is_none()
@@ -130,7 +130,7 @@ impl Candidate {
         }
     }
 
-    /// Whether both costs are equal: to the cycle on the target, within the
+    /// Returns whether both costs are equal: to the cycle on the target, within the
     /// spread of timings on the host.
     pub(super) fn costs_like(&self, other: &Self) -> bool {
         if let (Some(a), Some(b)) = (&self.cycles, &other.cycles) {

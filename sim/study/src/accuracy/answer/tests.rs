@@ -120,7 +120,7 @@ fn without_a_step_the_longest_of_each_rung_is_reported() {
         [("a", Some(1e-4)), ("b", Some(1e-3)), ("c", None)]
     );
     assert_eq!(a.longest[0].fails_below_s, [1e-5]);
-    // Of each rung the dearest that is still cheaper.
+    // Of each rung the costliest that is still cheaper.
     let cheaper: Vec<_> = a.cheaper.iter().map(|c| (c.solver, c.step_s)).collect();
     assert_eq!(cheaper, [("a", 1e-3), ("c", 1e-3)]);
 }

@@ -41,7 +41,7 @@ pub fn symptoms_table(points: &[SymptomPoint]) -> Table<'_, SymptomPoint> {
 /// A symptom at one step: in f32, and in f64 if it was studied, too.
 pub type Precisions<'p> = (&'p SymptomPoint, Option<&'p SymptomPoint>);
 
-/// For people, a row a symptom, both precisions side by side.
+/// Table for people, a row a symptom, both precisions side by side.
 pub fn precisions_table<'t>(rows: &'t [Precisions<'_>]) -> Table<'t, Precisions<'t>> {
     let mut table = Table::of(rows)
         .people("symptom", |(single, _)| single.name())
@@ -69,7 +69,7 @@ pub fn precisions_table<'t>(rows: &'t [Precisions<'_>]) -> Table<'t, Precisions<
         .rounded(fixed::<1>)
 }
 
-/// For people, the largest torque error: a column a step, a row a symptom in a
+/// Table for people of the largest torque error: a column a step, a row a symptom in a
 /// precision, which follow each other in `points`.
 pub fn steps_table<'p>(
     rows: &'p [&'p [SymptomPoint]],

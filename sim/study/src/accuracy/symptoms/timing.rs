@@ -46,7 +46,7 @@ impl Costs {
         )
     }
 
-    /// Of a symptom in a precision.
+    /// Returns the cost of a symptom in a precision.
     pub(super) fn of(&self, given: &Given, precision: Precision) -> SymptomCost {
         let cost = self.find(Some(given), precision);
         SymptomCost {

@@ -29,7 +29,8 @@ use crepitus_model::{SettingsError, ShaftStep};
 /// The device's tick, s.
 pub const TICK_S: f64 = 5e-5;
 
-/// With both senses the largest change that the input check accepts, rad/s.
+/// Largest speed of white velocities, rad/s: from one sense to the other it is the largest change that
+/// the input check accepts.
 const WHITE_RAD_S: f64 = 5.0;
 
 /// Number of steps of each input.

@@ -1,10 +1,10 @@
-//! What every rung, and what else the device does, costs on its core.
+//! Costs of every rung, and of what else the device does, on its core.
 
 use super::Row;
 use crepitus_table::show::{fixed, scaled, scientific};
 use crepitus_table::{Cell, Table};
 
-/// For people, a row a subject.
+/// Table for people, a row a subject.
 pub fn target_table(rows: &[Row]) -> Table<'_, Row> {
     Table::of(rows)
         .people("what", Row::name)

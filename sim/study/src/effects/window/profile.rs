@@ -1,9 +1,9 @@
-//! When a difference is, in bounded memory.
+//! Distribution of a difference over time, in bounded memory.
 
 /// Bins of a profile.
 const BINS: u64 = 4096;
 
-/// Where in time a difference is: its magnitude, in bins of equal length.
+/// Distribution of a difference over time: its magnitude, in bins of equal length.
 #[derive(Clone, Debug)]
 pub(in crate::effects) struct Profile {
     pub(super) ticks_per_bin: u64,
@@ -12,7 +12,7 @@ pub(in crate::effects) struct Profile {
 }
 
 impl Profile {
-    /// Of so many ticks.
+    /// Empty profile for this number of ticks.
     pub(in crate::effects) fn new(ticks: u64) -> Self {
         Self {
             ticks_per_bin: ticks.div_ceil(BINS).max(1),

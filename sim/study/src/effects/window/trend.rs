@@ -8,9 +8,9 @@ const HIDES: f64 = 5.0;
 /// The slow course of a torque: a parabola through it, if that is most of it.
 pub(super) struct Trend {
     pub(super) matters: bool,
-    /// From its first to its last tick the place goes from −1 to 1.
+    /// Number of ticks: from the first to the last the place goes from −1 to 1.
     ticks: f64,
-    /// Of 1, the place u, and u² less its mean.
+    /// Shares of 1, of the place u, and of u² less its mean.
     shares: [f64; 3],
     mean_square: f64,
 }
@@ -52,7 +52,7 @@ impl Trend {
         2.0 * tick / (self.ticks - 1.0) - 1.0
     }
 
-    /// What is taken off at a tick, N·m.
+    /// Torque that is taken off at a tick, N·m.
     pub(super) fn at(&self, tick: usize) -> f64 {
         if !self.matters {
             return 0.0;

@@ -9,7 +9,7 @@ use crate::vibration::loop_gain::CUFFS;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Settings};
 
-/// What the firmware has.
+/// Returns whether a subject is what the firmware has.
 fn shakes(subject: Subject) -> bool {
     subject.convention == Convention::Frozen
         && matches!(subject.solver, Rung::Ladder(Solver::ExactEvents))
@@ -28,7 +28,7 @@ pub(in crate::stability) const NOMINAL: ActuatorRun = ActuatorRun {
     step_s: TICK_S,
 };
 
-/// At most so much, over the whole run or from a time on.
+/// Criterion of at most so much, over the whole run or from a time on.
 fn at_most(what: Measure, most: f64) -> Criterion {
     within(what, None, 0.0, most)
 }

@@ -9,7 +9,7 @@ use crate::stability::criterion::{Criterion, Limits};
 use crate::symptoms::{Given, Hand};
 use crepitus_model::render::effects::symptom::Word;
 
-/// Behind counts a catch may be as late, s.
+/// Allowed lateness of a catch behind counts, s.
 const CAUGHT_WITHIN: Limits = Limits::both(0.01);
 
 fn catch() -> Given {
@@ -221,7 +221,7 @@ pub(super) fn clonus() -> Case {
                     (0.5, 0.0),
                 ],
             );
-            let let_go = Hand::jumps(50.0, &[(0.0, 200.0), (0.1, -250.0), (0.3, 0.0)]);
+            let released = Hand::jumps(50.0, &[(0.0, 200.0), (0.1, -250.0), (0.3, 0.0)]);
             let held = Hand::jumps(50.0, &[(0.0, 200.0), (0.1, 0.0)]);
             // 3 ms of a beat of 97.5 ms are still to come where it stops: it is not cut off.
             let slope = Criterion::TorqueStep { most_nm: 0.003 };
@@ -231,7 +231,7 @@ pub(super) fn clonus() -> Case {
                     [torque(0.0, 0.0, 0.0, 0.0), Criterion::Words(&[])],
                 ),
                 trial(
-                    under(&given, let_go, 1.0),
+                    under(&given, released, 1.0),
                     [
                         Criterion::SymptomEvents { within_s: ON_TIME },
                         Criterion::Words(&[Word::Start, Word::Beat, Word::Stop]),

@@ -10,20 +10,20 @@ use crepitus_model::render::effects::symptom::Word;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Settings};
 
-/// What the laws promise where the motion is a parabola in every tick: events.
+/// Limits that the laws promise where the motion is a parabola in every tick: events.
 pub(super) const ON_TIME: Limits = Limits {
     f64: 1e-9,
     f32: 1e-6,
 };
 
-/// And torque at the ends of ticks.
+/// Limits that the laws promise where the motion is a parabola in every tick: torque at the ends of ticks.
 pub(super) const SAME_TORQUE: Limits = Limits {
     f64: 5e-6,
     f32: 5e-5,
 };
 
-/// Who renders symptoms: what the firmware has, and their reference. They have no
-/// convention, which is of slips.
+/// Returns whether a subject renders symptoms: it is what the firmware has, or their reference. Symptoms
+/// have no convention, which is of slips.
 pub(super) fn renders_symptoms(subject: Subject) -> bool {
     let is_either = matches!(
         subject.solver,
@@ -79,7 +79,7 @@ pub(super) fn exactly(words: &'static [Word]) -> [Criterion; 3] {
     [events, torques, Criterion::Words(words)]
 }
 
-/// So often.
+/// Criterion of exactly `count` events of this kind.
 pub(super) fn times(word: Word, count: u64) -> Criterion {
     Criterion::WordCount {
         word,

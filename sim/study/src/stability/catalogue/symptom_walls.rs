@@ -38,7 +38,7 @@ fn firm() -> Given {
     wall(100.0, 60.0, 400.0, 0.3)
 }
 
-/// From 98° at 20 deg/s, then by 0.6 counts to either side, 700 times a second.
+/// Hand that moves from 98° at 20 deg/s, then by 0.6 counts to either side, 700 times a second.
 fn flicker(at_deg: f64) -> Hand {
     Hand::Tremble {
         from_deg: 98.0,

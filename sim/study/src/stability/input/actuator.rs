@@ -9,17 +9,17 @@ use std::fmt;
 /// A device that vibrates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ActuatorRun {
-    /// What is not as in the default plant, in words.
+    /// Differences from the default plant, in words.
     pub with: &'static str,
     /// The joint's preset.
     pub preset: &'static str,
     /// Speed that the hand intends, rad/s; 0 holds still.
     pub speed_rad_s: f64,
-    /// What the scene has besides, and instead: (effect, key, value as TOML).
+    /// Additional and replaced settings of the scene: (effect, key, value as TOML).
     pub keys: &'static [(&'static str, &'static str, &'static str)],
     /// The gear has backlash.
     pub backlash: bool,
-    /// What happens, and when, s.
+    /// Disturbances, and their times, s.
     pub upsets: &'static [(f64, Upset)],
     /// Lost samples.
     pub lost: Lost,
@@ -33,9 +33,9 @@ pub struct ActuatorRun {
 /// [`loop_gain`](crate::vibration::loop_gain).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActuatorLoop {
-    /// What holds the shell: each of these.
+    /// Hands that hold the shell: each of these.
     pub hands: &'static [&'static str],
-    /// On each of these cuffs, N·m/rad.
+    /// Stiffnesses of the cuffs: each of these, N·m/rad.
     pub cuffs_nm_per_rad: &'static [f64],
     /// Ticks that everything is late besides.
     pub late_ticks: u32,
@@ -58,7 +58,7 @@ impl fmt::Display for ActuatorLoop {
     }
 }
 
-/// What happens to it.
+/// Disturbance of a device that vibrates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Upset {
     /// The hand lets go.
@@ -72,7 +72,7 @@ pub enum Upset {
 }
 
 impl ActuatorRun {
-    /// As a scene.
+    /// Returns the run as a scene.
     pub(in crate::stability) fn scene(&self, precision: Precision) -> String {
         const EFFECTS: [&str; 11] = [
             "crepitus",

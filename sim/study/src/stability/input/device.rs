@@ -16,7 +16,7 @@ pub enum Fault {
     },
     /// All samples are NaN from this time on.
     Blind {
-        /// Since the start, s.
+        /// Time since the start, s.
         from_s: f64,
     },
     /// All samples are missing between two times.
@@ -60,7 +60,7 @@ pub struct Rendered {
 pub struct Lost {
     /// Samples in a row; 0 for none.
     pub ticks: u64,
-    /// From one burst to the next, in ticks; 0 for one burst only.
+    /// Ticks from one burst to the next; 0 for one burst only.
     pub every: u64,
     /// Start of the first, s.
     pub from_s: f64,
@@ -74,7 +74,7 @@ impl Lost {
         from_s: 0.0,
     };
 
-    /// Whether sample `n`, counted from 1, is lost.
+    /// Returns whether sample `n`, counted from 1, is lost.
     pub(in crate::stability) fn takes(&self, n: u64, step_s: f64) -> bool {
         let first = (self.from_s / step_s).round().whole() + 1;
         let Some(since) = n.checked_sub(first) else {

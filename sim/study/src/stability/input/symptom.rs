@@ -11,7 +11,7 @@ use std::fmt;
 pub struct SymptomRun {
     /// The symptoms.
     pub symptoms: Vec<Given>,
-    /// What the hand does.
+    /// Motion of the hand.
     pub hand: Hand,
     /// Whether they get counts of the device's encoder, or the true motion.
     pub counts: bool,
@@ -37,7 +37,7 @@ pub struct Pressed {
     pub loss: f64,
     /// Dry friction of the rotor, N·m.
     pub friction_nm: f64,
-    /// What presses, N·m.
+    /// Torque that presses, N·m.
     pub torque_nm: f64,
     /// Duration, s.
     pub duration_s: f64,
@@ -46,7 +46,7 @@ pub struct Pressed {
 }
 
 impl Pressed {
-    /// As a scene. What presses is a string so soft that it does not notice the wall.
+    /// Returns the run as a scene. What presses is a string so soft that it does not notice the wall.
     pub(in crate::stability) fn scene(&self, precision: Precision) -> String {
         const STRING_NM_PER_RAD: f64 = 0.02;
         let Self {
@@ -103,7 +103,7 @@ pub struct RefusedSymptoms {
 }
 
 impl SymptomRun {
-    /// Whether the reference solves it too: one symptom, on the true motion, as it
+    /// Returns whether the reference solves it too: one symptom, on the true motion, as it
     /// was armed.
     pub(in crate::stability) fn suits_the_reference(&self) -> bool {
         self.symptoms.len() == 1

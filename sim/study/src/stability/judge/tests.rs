@@ -1,5 +1,5 @@
 //! Every criterion is shown an observation that is right and one that is
-//! wrong: a criterion that cannot fail is none.
+//! wrong: a criterion that cannot fail is not a criterion.
 
 use super::*;
 use crate::stability::criterion::Limits;
@@ -41,7 +41,7 @@ fn truth() -> Vec<TrueEvent> {
         .collect()
 }
 
-/// What is seen when `events` happen.
+/// Observation of a run in which `events` happen.
 fn seen(events: &[TrueEvent]) -> Observation {
     let mut seen = Observation {
         steps: 300,

@@ -1,4 +1,4 @@
-//! Why implicit Euler, stable at every step, loses the effect: its numerical
+//! Loss of the effect under implicit Euler, which is stable at every step: its numerical
 //! damping stops the object short of the shaft's speed.
 
 use super::Line;
@@ -11,23 +11,23 @@ use crepitus_plant::Motion;
 const OMEGA_RAD_S: f64 = 1.0;
 /// The device's tick, s.
 const STEP_S: f64 = 5e-5;
-/// How much of the run the first panel shows, s: three cycles.
+/// Duration of the run in the first panel, s: three cycles.
 const SHOWN_S: f64 = 0.1;
-/// Around the moment when the object should stick again, s.
+/// Interval around the moment when the object should stick again, s.
 const NEAR_S: (f64, f64) = (0.029, 0.035);
-/// How long a run is counted, s.
+/// Duration over which a run is counted, s.
 const COUNTED_S: f64 = 1.0;
 
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImplicitEuler {
-    /// Of the joint.
+    /// Parameters of the joint.
     pub parameters: Parameters,
     /// Speed of the shaft, rad/s.
     pub omega_rad_s: f64,
-    /// How long torques are shown, s.
+    /// Duration over which torques are shown, s.
     pub shown_s: f64,
-    /// Around the moment when the object should stick again, s.
+    /// Interval around the moment when the object should stick again, s.
     pub near_s: (f64, f64),
     /// The longest step with which implicit Euler still sticks, s.
     pub bound_s: f64,
@@ -44,7 +44,7 @@ pub struct Method {
     pub torque_nm: Line,
     /// Velocity of the object, rad/s, near that moment, against time, s.
     pub theta_dot_rad_s: Line,
-    /// How often it broke loose.
+    /// Number of times that the object broke loose.
     pub breaks: usize,
     /// Frequency of the cycle, Hz, against the step, s.
     pub frequency_hz: Line,

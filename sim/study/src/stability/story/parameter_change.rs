@@ -1,4 +1,4 @@
-//! What a change of stiffness does to a wound spring: without a thought it
+//! Effect of a change of stiffness on a wound spring: without a thought it
 //! injects energy from nowhere; committed and ramped it injects none.
 
 use super::Line;
@@ -16,19 +16,19 @@ use crepitus_plant::Motion;
 const STEP_S: f64 = 5e-5;
 /// Speed of the shaft, rad/s.
 const OMEGA_RAD_S: f64 = 1.0;
-/// When the spring is made forty times stiffer, and when soft again, s.
+/// Time at which the spring is made forty times stiffer, and time at which it is made soft again, s.
 const STIFFER_S: f64 = 0.039;
 const SOFTER_S: f64 = 0.09;
-/// How long the run is, s.
+/// Duration of the run, s.
 const SHOWN_S: f64 = 0.13;
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterChange {
     /// Ts and Tk, N·m.
     pub levels_nm: (f64, f64),
-    /// When the spring is made stiffer, and when soft again, s.
+    /// Times at which the spring is made stiffer, and soft again, s.
     pub changes_s: (f64, f64),
-    /// How long the run is, s.
+    /// Duration of the run, s.
     pub shown_s: f64,
     /// One step, s.
     pub step_s: f64,
@@ -131,7 +131,7 @@ fn committed(
     Ok(lines)
 }
 
-/// What the equations say if the numbers are replaced and the state is not
+/// Solution of the equations if the numbers are replaced and the state is not
 /// looked at: the stick's angle goes on, and the far too strong spring swings.
 fn naive(soft: &Parameters, stiff: &Parameters) -> Result<Change, SettingsError> {
     let swing = Oscillator::<f64>::of(stiff).transition(STEP_S);

@@ -23,7 +23,7 @@ pub struct RestickRules {
     pub amplitude_deg: f64,
     /// Its frequency, Hz.
     pub frequency_hz: f64,
-    /// How long it is shown, s.
+    /// Duration that is shown, s.
     pub duration_s: f64,
     /// Ts, N·m.
     pub static_torque_nm: f64,
@@ -40,7 +40,7 @@ pub struct Rule {
     pub convention: Convention,
     /// Torque, N·m, against time, s.
     pub torque_nm: Line,
-    /// When the object broke loose, s.
+    /// Times at which the object broke loose, s.
     pub breaks_s: Vec<f64>,
 }
 

@@ -7,7 +7,7 @@ use crepitus_model::{EventKind, Real, Settings, SettingsError, StickSlip, Valida
 use crepitus_plant::Motion;
 use crepitus_scene::any_joint::AnyJoint;
 
-/// What is run.
+/// Run that is to be recorded.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run<'a> {
     pub(super) settings: &'a Validated<Settings>,
@@ -17,14 +17,14 @@ pub(super) struct Run<'a> {
     pub(super) step_s: f64,
 }
 
-/// What came of it, in f64.
+/// Result of a run, in f64.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Trace {
     /// Torque shown, N·m, against time, s; upright where it jumps.
     pub(super) torque_nm: Vec<(f64, f64)>,
     /// Velocity of the object, rad/s, against time, s.
     pub(super) theta_dot_rad_s: Vec<(f64, f64)>,
-    /// When it broke loose, s.
+    /// Times at which the object broke loose, s.
     pub(super) breaks_s: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What a hand gets back that turns round inside a slip, with the turn-back
+//! Energy that a hand gets back when it turns round inside a slip, with the turn-back
 //! guard and without it, and how close the worst comes to the bound.
 
 use super::Line;
@@ -12,7 +12,7 @@ use crepitus_scene::scene::Precision;
 
 /// The device's tick, s.
 const STEP_S: f64 = 5e-5;
-/// How long the hand shakes for a point of the sweep, s, and for the lines.
+/// Duration of the shaking for a point of the sweep, s, and for the lines.
 const SWEPT_S: f64 = 2.0;
 const SHOWN_S: f64 = 0.2;
 /// The hand of the lines: far enough to break the stick at every stroke.
@@ -26,7 +26,7 @@ const SHOWN: Shake = Shake {
 /// Frequency of the sweep, Hz.
 const SWEPT_HZ: f64 = 50.0;
 
-/// What the device renders.
+/// Subject that the device renders.
 const DEVICE: Subject = Subject {
     solver: Rung::Ladder(Solver::ExactEvents),
     convention: Convention::Frozen,
@@ -39,12 +39,12 @@ const DELAYS: [usize; 3] = [0, 1, 2];
 /// See the module.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TurnBack {
-    /// How long lines are, s, and how long the hand shakes for a point of the
+    /// Durations of the lines, s, and of the shaking for a point of the
     /// sweep, s.
     pub lengths_s: (f64, f64),
     /// Frequency of the sweep, Hz.
     pub swept_hz: f64,
-    /// What the spring holds at the static limit, J.
+    /// Energy that the spring holds at the static limit, J.
     pub stored_j: f64,
     /// One hand.
     pub shaking: Shaking,
@@ -71,7 +71,7 @@ pub struct Shaking {
 /// amplitude in strokes of a stick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Swept {
-    /// How late the torque is.
+    /// Delay of the torque, ticks.
     pub delay_ticks: usize,
     /// The line.
     pub returned: Line,

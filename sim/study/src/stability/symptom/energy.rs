@@ -11,7 +11,7 @@
 use crate::stability::input::SymptomRun;
 use std::collections::VecDeque;
 
-/// What a hand gets back at once is measured over any time as long as this, s.
+/// Length of the sliding window for the net energy that a hand gets back at once, s.
 const NET_S: f64 = 2.0;
 
 /// The hand's account.
@@ -80,7 +80,7 @@ impl Energy {
         }
     }
 
-    /// As a share of the energy of the springs at the largest torque.
+    /// Largest returned energy, as a share of the energy of the springs at the largest torque.
     pub(super) fn returned(&self) -> f64 {
         let stored_j = self.largest_nm * self.largest_nm / (2.0 * self.stiffness);
         if stored_j > 0.0 {
@@ -90,7 +90,7 @@ impl Energy {
         }
     }
 
-    /// In any two seconds, J.
+    /// Largest net energy returned in any two seconds, J.
     pub(super) fn net_returned_j(&self) -> f64 {
         self.net_j
     }

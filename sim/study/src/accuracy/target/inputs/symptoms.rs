@@ -15,7 +15,7 @@ use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::render::effects::IS_SYMPTOM;
 use crepitus_plant::encoder::Encoder;
 
-/// Where hard inputs begin, degrees: at the walls, thresholds and releases of a symptom at
+/// Angles at which hard inputs begin, degrees: at the walls, thresholds and releases of a symptom at
 /// its defaults. Teeth and asperities are at every 7.5° and about every 1.5°.
 fn places_deg(subject: Subject) -> &'static [f64] {
     match subject.name() {
@@ -26,7 +26,7 @@ fn places_deg(subject: Subject) -> &'static [f64] {
     }
 }
 
-/// Whether it is a symptom other than crepitus.
+/// Returns whether it is a symptom other than crepitus.
 pub(super) fn is_symptom(subject: Subject) -> bool {
     let Subject::Effect(place, _) = subject else {
         return false;
