@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-/// What the name depends on: each commit and each checkout adds a line to the log of `HEAD`, and an
+/// Inputs that the name depends on: each commit and each checkout adds a line to the log of `HEAD`, and an
 /// edit of what the program is built from makes it dirty. The index is left out: `git describe`
 /// itself writes it, so that every second build would be done twice.
 const INPUTS: [&str; 14] = [

@@ -94,7 +94,7 @@ impl Device {
         })
     }
 
-    /// Whether the connection is closed.
+    /// Returns whether the connection is closed.
     #[getter]
     fn closed(&self, py: Python<'_>) -> bool {
         py.detach(|| self.lock().is_none())
@@ -225,7 +225,7 @@ impl Device {
         })
     }
 
-    /// Turns torque off at once, whoever has armed the device; ends what another thread
+    /// Turns torque off at once, whichever program has armed the device; ends what another thread
     /// does with it.
     fn stop(&self, py: Python<'_>) -> PyResult<()> {
         self.stops.fetch_add(1, Ordering::Relaxed);
@@ -245,7 +245,7 @@ impl Device {
         self.request(py, Client::clear_fault)
     }
 
-    /// Whether this connection has armed the device, and it is still armed.
+    /// Returns whether this connection has armed the device, and it is still armed.
     #[getter]
     fn armed(&self, py: Python<'_>) -> PyResult<bool> {
         self.work(py, |client| Ok(client.is_armed()))

@@ -33,7 +33,7 @@ pub struct Gap {
     pub samples: u64,
 }
 
-/// How a block continues the stream.
+/// Relation of a block to the stream before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
     /// A new block.
@@ -65,7 +65,7 @@ pub struct Accounting {
     violations: u64,
 }
 
-/// Where a stream of blocks begins.
+/// Start of a stream of blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Begin {
     /// The first tick.

@@ -80,9 +80,9 @@ pub(crate) struct Watch {
 /// that is slow at receiving, a pump would otherwise do little else.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pace {
-    /// When the last pump returned.
+    /// Time at which the last pump returned.
     pub(crate) pumped_at: Duration,
-    /// For how much longer than that it has received.
+    /// Excess of the time spent receiving over the time that the program took.
     pub(crate) ahead: Duration,
 }
 
@@ -112,15 +112,15 @@ pub(crate) struct Counts {
 /// Samples that are always under way, at most: 100 ms of them.
 const UNDER_WAY: u64 = 2_000;
 
-/// As long as they take.
+/// Duration of [`UNDER_WAY`] samples.
 const SHORT_SILENCE: Duration = Duration::from_millis(100);
 
 /// Telemetry that had stopped while the device went on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unheard {
-    /// For how long nothing has come.
+    /// Time for which nothing has come.
     pub silence: Duration,
-    /// How many samples the device has produced since the last one that came; none if it does not answer.
+    /// Number of samples produced since the last one that came; none if the device does not answer.
     pub samples: Option<u64>,
 }
 
@@ -233,7 +233,7 @@ impl<T: Transport> Client<T> {
         self.wire.now()
     }
 
-    /// Whether this client has armed the device and, as of the last status, it
+    /// Returns whether this client has armed the device and, as of the last status, it
     /// still is.
     pub fn is_armed(&self) -> bool {
         self.lease == Lease::Held
@@ -247,8 +247,8 @@ impl<T: Transport> Client<T> {
         }
     }
 
-    /// What the device has produced and nobody has heard, if that is more than what is always under way.
-    /// A program that passes everything on may hang while the device goes on.
+    /// Telemetry that the device has produced and nobody has heard, if that is more than what is always
+    /// under way. A program that passes everything on may hang while the device goes on.
     pub fn unheard(&mut self) -> Option<Unheard> {
         self.accounting()?;
         if !self.telemetry.is_subscribed {
@@ -270,7 +270,7 @@ impl<T: Transport> Client<T> {
         (samples.is_none_or(|samples| samples > UNDER_WAY)).then_some(Unheard { silence, samples })
     }
 
-    /// Whether the connection is open.
+    /// Returns whether the connection is open.
     pub fn is_connected(&self) -> bool {
         self.loss.is_none()
     }

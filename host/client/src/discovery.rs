@@ -31,7 +31,7 @@ pub struct Device {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DeviceKind {
-    /// On USB.
+    /// Device on USB.
     Usb {
         /// Serial number, if the system reports it.
         serial_number: Option<String>,
@@ -140,7 +140,7 @@ pub fn is_stale(port: &Path) -> bool {
     is_stale_in(&simulated_folder(), port)
 }
 
-/// Where this port leads, if it is, or links to, the link of a simulated device that is served, and
+/// Target of this port, if it is, or links to, the link of a simulated device that is served, and
 /// that link does not lead to it. What is behind it may be anybody's terminal.
 pub fn leads_elsewhere(port: &Path) -> Option<Elsewhere> {
     match unserved_in(&simulated_folder(), port) {
@@ -153,7 +153,7 @@ fn is_stale_in(folder: &Path, port: &Path) -> bool {
     unserved_in(folder, port) == Some(Standing::Ended)
 }
 
-/// Which pseudo-terminal this port is, if it is one and does not lead there by the link of a simulated device.
+/// Pseudo-terminal that this port is, if it is one and does not lead there by the link of a simulated device.
 /// When its program has ended, its name may be given to anybody's terminal: that is another one.
 #[cfg(unix)]
 pub fn pseudo_terminal(port: &Path) -> Option<PseudoTerminal> {
@@ -176,7 +176,7 @@ pub fn pseudo_terminal(_: &Path) -> Option<PseudoTerminal> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PseudoTerminal(u64, i64, i64);
 
-/// What is behind the first link on the way from this port that is one of a simulated device, and
+/// Target of the first link on the way from this port that is one of a simulated device, and
 /// not served.
 fn unserved_in(folder: &Path, port: &Path) -> Option<Standing> {
     let links = simulated_links(folder, port);
@@ -233,7 +233,7 @@ mod tests {
         usb_devices().unwrap();
     }
 
-    /// What the program says that serves a device at this pty.
+    /// Text in the lock of the program that serves a device at this pty.
     #[cfg(unix)]
     fn lock_text(pty: &Path) -> String {
         format!("{}\n", pty.display())

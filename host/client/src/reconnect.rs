@@ -41,7 +41,7 @@ pub struct Reconnected {
 pub struct Resubscribed {
     /// The tick after the last sample received before.
     pub until_tick: u64,
-    /// Begin of the resumed stream.
+    /// Start of the resumed stream.
     pub begin: Begin,
 }
 

@@ -76,7 +76,7 @@ impl RequestKind {
         }
     }
 
-    /// Whether the device executes it as a job: one at a time, for half a second
+    /// Returns whether the device executes it as a job: one at a time, for half a second
     /// at most.
     pub(crate) fn is_job(self) -> bool {
         match self {

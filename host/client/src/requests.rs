@@ -22,7 +22,7 @@ const HANDSHAKE_RETRY: Duration = Duration::from_millis(50);
 /// A post-mortem record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crash {
-    /// How the program ended.
+    /// Head of the record: how the program ended.
     pub head: Head,
     /// Its last ticks, the oldest first; of the drive only.
     pub ticks: Vec<Tick>,

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 /// USB has no baud rate, and a pty neither; a number has to be given.
 const BAUD_RATE: u32 = 115_200;
 
-/// What the system says of a character device that is no terminal, such as `/dev/null`.
+/// Error text of the system for a character device that is no terminal, such as `/dev/null`.
 const NO_TERMINAL: &str = "Not a typewriter";
 
 /// Timeout after which a port without progress is stalled.
@@ -171,8 +171,8 @@ fn open(path: &str) -> Result<Box<dyn SerialPort>, TransportError> {
         .timeout(SEND_PATIENCE)
         .open()
         .map_err(|error| why(path, &error))?;
-    // The library also locks the port, which ends with this program. What the terminal itself
-    // was told would not: after a SIGKILL nobody but root could open it, the simulator included.
+    // The library also locks the port, which ends with this program. The terminal's own exclusive
+    // mode would not: after a SIGKILL nobody but root could open it, the simulator included.
     #[cfg(target_os = "linux")]
     if let Some(own) = own {
         let _ = rustix::termios::ioctl_tiocnxcl(own);
@@ -190,7 +190,7 @@ fn pseudo_terminal(path: &str) -> Option<std::os::fd::OwnedFd> {
     is_one.then(|| rustix::fs::open(path, flags, Mode::empty()).ok())?
 }
 
-/// Whether the system lists a serial port of this name.
+/// Returns whether the system lists a serial port of this name.
 fn is_listed(path: &str) -> bool {
     let name = path.trim_start_matches(r"\\.\");
     let ports = serialport::available_ports().unwrap_or_default();

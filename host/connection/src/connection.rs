@@ -16,11 +16,11 @@ const EMULATED: &str = "emulated";
 /// A device at a serial port, shared with other programs, or a simulated one in
 /// this process.
 pub enum Connection {
-    /// At a port.
+    /// Device at a port.
     Shared(Box<Shared>),
-    /// At a port that cannot be shared, for a stop.
+    /// Device at a port that cannot be shared, for a stop.
     Alone(Box<Serial>),
-    /// In this process.
+    /// Device in this process.
     Simulated(Box<Simulated>),
 }
 
@@ -127,12 +127,12 @@ fn serial(port: &str, program: &str) -> Result<Connection, OpenError> {
         .map_err(OpenError::Transport)
 }
 
-/// Whether a name is that of a device in this process.
+/// Returns whether a name is that of a device in this process.
 pub fn is_in_this_process(name: &str) -> bool {
     [SIMULATED, EMULATED].contains(&name)
 }
 
-/// Whether a name is a port, and not the name of a simulated device: a path, or `COM` with a
+/// Returns whether a name is a port, and not the name of a simulated device: a path, or `COM` with a
 /// number.
 pub fn is_port(name: &str) -> bool {
     let of_windows = name

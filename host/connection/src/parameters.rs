@@ -38,7 +38,7 @@ pub fn find(name: &str) -> Result<(u8, &'static Parameter), UnknownParameter> {
 /// Likeness of names that are probably meant for each other, from 0 to 1.
 const ALIKE: f64 = 0.85;
 
-/// How much a parameter's name, with or without that of its group, is like a given one.
+/// Likeness of a parameter's name, with or without that of its group, to a given one.
 fn likeness(parameter: &Parameter, given: &str) -> f64 {
     let full = strsim::jaro_winkler(&full_name(parameter), given);
     let short = strsim::jaro_winkler(parameter.key(), given);

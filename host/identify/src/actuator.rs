@@ -17,7 +17,7 @@
 //! | what is refused | [`Refusal`], `examined.rs` |
 //! | measured and fitted impedance as a picture | [`chart`] |
 //!
-//! What no current shows: a ring that moves as one with the shell. The mass then swings
+//! Not visible in any current: a ring that moves as one with the shell. The mass then swings
 //! against both, and the resonance is that of m·M/(m + M). Hence the vice.
 
 mod bands;

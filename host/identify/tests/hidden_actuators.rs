@@ -1,4 +1,4 @@
-//! Simulated actuators whose values nobody has told the fit, ±30 % about those of
+//! Simulated actuators whose values are unknown to the fit, ±30 % about those of
 //! the data sheet.
 
 mod support;
@@ -27,7 +27,7 @@ fn compared(found: &Actuator, truth: &Simulated) -> [(&'static str, Estimate, f6
     ]
 }
 
-/// What the balance shows: within 1 % in 95 of 100 cases.
+/// Reading of the balance: within 1 % in 95 of 100 cases.
 fn weighed(mass_kg: f64, random: &mut fastrand::Rng) -> Weighed {
     let normal = (0..12).map(|_| random.f64()).sum::<f64>() - 6.0;
     Weighed {

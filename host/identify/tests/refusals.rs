@@ -1,4 +1,4 @@
-//! What is no linear actuator on a vice is refused, with the reason that it has.
+//! Refusal of what is no linear actuator on a vice, with the reason that it has.
 
 mod support;
 

@@ -1,4 +1,4 @@
-//! What a student names and what a knee has: a disorder or none, with its level.
+//! Finding that a student names and that a knee has: a disorder or none, with its level.
 
 use crepitus_scene::preset::{Disorder, Level, Preset};
 use serde::{Deserialize, Serialize};

@@ -293,12 +293,12 @@ impl Lesson {
         self.order.len()
     }
 
-    /// Whether the current trial has begun.
+    /// Returns whether the current trial has begun.
     pub const fn began(&self) -> bool {
         self.began
     }
 
-    /// Whether the lesson has ended.
+    /// Returns whether the lesson has ended.
     pub const fn ended(&self) -> bool {
         self.ended
     }
@@ -318,7 +318,7 @@ impl Lesson {
             .unwrap_or(&NONE)
     }
 
-    /// What the plan says of a trial, from 1.
+    /// Entry of the plan for a trial, from 1.
     pub(crate) fn planned(&self, trial: usize) -> Option<&PlannedKnee> {
         self.plan().knees.get(self.place_of(trial)?)
     }
@@ -337,12 +337,12 @@ impl Lesson {
         &self.notes
     }
 
-    /// Whether the knee of the current trial is hidden: parameters and torque must not be shown.
+    /// Returns whether the knee of the current trial is hidden: parameters and torque must not be shown.
     pub fn is_hidden(&self) -> bool {
         !self.is_revealed(self.trial())
     }
 
-    /// Whether the knee of a trial, from 1, may be known.
+    /// Returns whether the knee of a trial, from 1, may be known.
     pub fn is_revealed(&self, trial: usize) -> bool {
         if !self.plan().blind || self.ended {
             return true;

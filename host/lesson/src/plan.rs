@@ -41,10 +41,10 @@ const MOST_TIME_S: f64 = 3600.0;
 pub struct Plan {
     /// Title, one line.
     pub title: String,
-    /// What the lesson is for.
+    /// Purpose of the lesson.
     #[serde(default)]
     pub description: String,
-    /// What to do with every knee that has no instruction of its own.
+    /// Instruction for every knee that has none of its own.
     #[serde(default)]
     pub instruction: Option<String>,
     /// Whether the students do not see which knee it is.
@@ -53,10 +53,10 @@ pub struct Plan {
     /// Whether the torque curves are shown while the knee is hidden.
     #[serde(default)]
     pub curves: bool,
-    /// When answers are judged.
+    /// Time at which answers are judged.
     #[serde(default)]
     pub feedback: Feedback,
-    /// How often every knee comes, at least once.
+    /// Number of times that every knee comes, at least 1.
     #[serde(default = "once")]
     pub repeats: usize,
     /// The knees: `[[knee]]`, or `knees` of the page.
@@ -74,7 +74,7 @@ const fn once() -> usize {
 pub struct PlannedKnee {
     /// Name of a preset, or "healthy".
     pub preset: String,
-    /// What to do with it.
+    /// Instruction for this knee.
     #[serde(default)]
     pub instruction: Option<String>,
     /// Name of a target speed.
@@ -85,7 +85,7 @@ pub struct PlannedKnee {
     pub time_s: Option<f64>,
 }
 
-/// When answers are judged.
+/// Time at which answers are judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Feedback {
@@ -96,7 +96,7 @@ pub enum Feedback {
     End,
 }
 
-/// What a plan can name besides the shipped presets.
+/// Presets of the user's own and target speeds, which a plan can name besides the shipped presets.
 #[derive(Clone, Copy)]
 pub struct Known<'a> {
     /// Finds a preset of the user's own.
@@ -116,7 +116,7 @@ pub struct CheckedPlan {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
-    /// Not TOML or JSON of a plan; the text names the key.
+    /// Text that is not TOML or JSON of a plan; the error's text names the key.
     #[error("the lesson cannot be read: {0}")]
     Form(String),
     /// A text is empty or too long.

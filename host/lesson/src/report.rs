@@ -163,7 +163,7 @@ fn trials(session: &Session, student: &str, words: &Words<'_>) -> Markup {
                 }
             } }
             tbody {
-                // The knee of a trial that was not reached is not told.
+                // The knee of a trial that was not reached is not revealed.
                 @for trial in (1..=lesson.trials()).filter(|trial| lesson.is_revealed(*trial)) {
                     @let answer = answer_to(trial);
                     @let knee = lesson.knee_of(trial);
@@ -185,7 +185,7 @@ fn trials(session: &Session, student: &str, words: &Words<'_>) -> Markup {
     }
 }
 
-/// Whether disorder and level are right.
+/// Returns whether disorder and level are right.
 fn verdict(session: &Session, answer: &Answer, words: &Words<'_>) -> String {
     let knee = session.lesson.knee_of(answer.trial);
     words.get(match (answer.is_right(knee), answer.is_level_right(knee)) {
@@ -280,7 +280,7 @@ fn notes(session: &Session, words: &Words<'_>) -> Markup {
     }
 }
 
-/// How to read the numbers.
+/// Remarks on how to read the numbers.
 fn remarks(summary: &Summary, words: &Words<'_>) -> Markup {
     let students = || summary.students.iter().map(|student| &student.scores);
     let few = students().any(|scores| scores.answers < ENOUGH);

@@ -54,10 +54,10 @@ impl Kappa {
     }
 }
 
-/// How well an answer of another category agrees.
+/// Degree to which an answer of another category agrees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weights {
-    /// Not at all.
+    /// No agreement.
     Nominal,
     /// The less the further it is away.
     Linear,

@@ -45,7 +45,7 @@ pub struct Scores {
     pub kappa: Option<Interval>,
     /// Linearly weighted kappa of the level.
     pub level_kappa: Option<Interval>,
-    /// How often which knee got which answer.
+    /// Numbers of answers, by knee and answer.
     pub confusion: Confusion,
 }
 
@@ -176,12 +176,12 @@ impl Confusion {
 }
 
 impl Answer {
-    /// Whether the disorder is that of the knee.
+    /// Returns whether the disorder is that of the knee.
     pub fn is_right(&self, knee: &Knee) -> bool {
         knee.disorder == Some(self.disorder)
     }
 
-    /// Whether the level is that of the knee; `None` if one of them has none. A healthy knee has
+    /// Returns whether the level is that of the knee; `None` if one of them has none. A healthy knee has
     /// the level "none".
     pub fn is_level_right(&self, knee: &Knee) -> Option<bool> {
         let truth = grade(knee.disorder, knee.level)?;

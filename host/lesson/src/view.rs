@@ -22,7 +22,7 @@ pub struct View {
     pub blind: bool,
     /// Whether the torque curves are shown while the knee is hidden.
     pub curves: bool,
-    /// When answers are judged.
+    /// Time at which answers are judged.
     pub feedback: Feedback,
     /// Seed of the order.
     pub seed: u64,
@@ -36,7 +36,7 @@ pub struct View {
     pub trial: usize,
     /// Number of trials.
     pub trials: usize,
-    /// What to do in this trial.
+    /// Instruction for this trial.
     pub instruction: String,
     /// Name of the target speed.
     pub target: Option<String>,
@@ -50,7 +50,7 @@ pub struct View {
     pub answers: Vec<AnswerView>,
     /// Whether the lesson has ended.
     pub ended: bool,
-    /// What can be answered.
+    /// Answers that can be given.
     pub choices: Choices,
     /// Results, once a blind lesson has ended.
     pub summary: Option<Summary>,
@@ -108,7 +108,7 @@ pub struct AnswerView {
     pub level_right: Option<bool>,
 }
 
-/// What can be answered.
+/// Disorders and levels that can be answered.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Choices {
     /// Disorders, "healthy" first.
@@ -128,7 +128,7 @@ impl Choices {
 }
 
 impl Lesson {
-    /// What may be seen of it; `stored` is the folder of the session, if it is stored.
+    /// Visible part of the lesson; `stored` is the folder of the session, if it is stored.
     pub fn view(&self, stored: Option<&str>) -> View {
         let plan = self.plan();
         let trial = self.trial();

@@ -79,7 +79,7 @@ fn trial(session: &mut Session, folder: &SessionFolder) {
     }
 }
 
-/// Whether nothing in the page's message tells the knee of this trial.
+/// Returns whether nothing in the page's message tells the knee of this trial.
 fn hides(view: &View, session: &Session) -> bool {
     let json = serde_json::to_value(view).unwrap();
     let knee = session.lesson.knee();

@@ -22,7 +22,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// Without a value.
+    /// Span without a value.
     pub const NONE: Self = Self {
         low: f32::NAN,
         high: f32::NAN,
@@ -42,7 +42,7 @@ impl Span {
     }
 }
 
-/// What happened in a bin, beside the effects' states.
+/// Events and conditions in a bin, beside the effects' states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Marks(pub u16);
 
@@ -64,7 +64,7 @@ impl Marks {
     /// There is no sample: all spans are empty.
     pub const GAP: u16 = 1 << 7;
 
-    /// Without what tells how the imaginary object moves.
+    /// Returns the marks without those of the imaginary object's motion.
     #[must_use]
     pub fn without_phase(self) -> Self {
         Self(self.0 & !(Self::STICK | Self::SLIP))
@@ -164,7 +164,7 @@ pub struct Envelope {
 const MOST_GAPS: u64 = 20_000;
 
 impl Envelope {
-    /// With bins of so many samples, at least 1.
+    /// Returns an empty envelope with bins of `rows_per_bin` samples, at least 1.
     pub fn new(rows_per_bin: u32) -> Self {
         Self {
             rows_per_bin: u64::from(rows_per_bin.max(1)),

@@ -1,4 +1,4 @@
-//! How well a hand keeps to a target.
+//! Judgement of how well a hand keeps to a target.
 //!
 //! Of every piece of the path it is judged whether it was travelled too slowly, right or
 //! too fast; turns at the ends weigh little, because little is travelled there. The score
@@ -35,7 +35,7 @@ pub enum Verdict {
     Fast,
 }
 
-/// What came of it.
+/// Result of scoring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Score {
     /// Time that was judged, s.
@@ -48,11 +48,11 @@ pub struct Score {
     pub share_fast: Option<f64>,
     /// Strokes.
     pub strokes: u32,
-    /// Of these, at the right speed.
+    /// Number of strokes at the right speed.
     pub strokes_right: u32,
     /// Beats of the metronome.
     pub beats: u32,
-    /// Of these, with a turn at them.
+    /// Number of beats with a turn at them.
     pub beats_hit: u32,
     /// Share of the right strokes, or of the beats, in per cent; none without any.
     pub score: Option<f64>,
@@ -67,7 +67,7 @@ pub struct Pace {
     speed_deg_per_s: f64,
     last_s: Option<f64>,
     is_scoring: bool,
-    /// Begin of scoring.
+    /// Start of scoring.
     begin_s: Option<f64>,
     /// Degrees: slow, right, fast.
     path_deg: [f64; 3],
@@ -110,7 +110,7 @@ impl Pace {
         }
     }
 
-    /// Whether it scores.
+    /// Returns whether it scores.
     pub fn is_scoring(&self) -> bool {
         self.is_scoring
     }

@@ -77,7 +77,7 @@ impl Strokes {
         stroke
     }
 
-    /// From the last turn to the extreme.
+    /// Stroke from the last turn to the extreme.
     fn stroke(&self) -> Option<Stroke> {
         let points = self.points.get(..=self.extreme)?;
         let (&(_, from), &(end_s, to)) = (points.first()?, points.last()?);

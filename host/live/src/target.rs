@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// What a hand should do.
+/// Task of a hand.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Aim {
@@ -25,21 +25,21 @@ pub enum Aim {
 pub struct Target {
     /// Name; `own` if a person has set it.
     pub name: &'static str,
-    /// What to do.
+    /// Task of the hand.
     #[serde(flatten)]
     pub aim: Aim,
 }
 
-/// Why an aim is rejected.
+/// Reason for the rejection of an aim.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TargetError {
-    /// Not a band of speeds.
+    /// Invalid band of speeds.
     #[error(
         "invalid target: expected a speed from 1 to 600 °/s, the lower end below the upper one"
     )]
     Band,
-    /// Not a beat.
+    /// Invalid beat of a metronome.
     #[error("invalid metronome: expected 10 to 240 beats a minute")]
     Beat,
 }

@@ -1,4 +1,4 @@
-// Stop: torque off, whatever the page shows and whoever looks.
+// Stop: torque off, whatever the page shows, from every page.
 
 import { request, say } from "./report.js";
 import { text } from "./strings.js";

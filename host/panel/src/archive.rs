@@ -28,9 +28,9 @@ pub(crate) struct Question {
     pub(crate) reply: oneshot::Sender<Result<Found, String>>,
 }
 
-/// What is asked.
+/// Content of a question.
 pub(crate) enum Asked {
-    /// Which there are.
+    /// List of the recordings.
     List,
     /// Facts of one.
     Open { recording: u32 },
@@ -44,7 +44,7 @@ pub(crate) enum Asked {
     },
 }
 
-/// What is found.
+/// Answer to a question.
 pub(crate) enum Found {
     Facts(Value),
     Trace(Bytes),
@@ -54,7 +54,7 @@ pub(crate) enum Found {
 pub(crate) struct Archive {
     /// Recordings of the command line.
     given: Vec<PathBuf>,
-    /// Where sessions are.
+    /// Folder of the sessions.
     sessions: Option<PathBuf>,
     /// Files that were listed; the place of one is its number.
     listed: Vec<PathBuf>,
@@ -152,7 +152,7 @@ impl Archive {
         self.listed.len() - 1
     }
 
-    /// Within the folder of sessions, or the whole path.
+    /// Path of a file within the folder of sessions, or the whole path.
     fn name_of(&self, path: &Path) -> String {
         let short = (self.sessions.as_ref()).and_then(|folder| path.strip_prefix(folder).ok());
         short.unwrap_or(path).display().to_string()

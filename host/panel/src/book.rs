@@ -41,7 +41,7 @@ pub(crate) fn fault(code: u8) -> Option<Value> {
     Some(json!({ "title": title, "rows": rows, "paragraphs": paragraphs }))
 }
 
-/// Without the marks of emphasis and code.
+/// Returns the text without the marks of emphasis and code.
 fn plain(text: &str) -> String {
     text.replace("**", "").replace('`', "")
 }

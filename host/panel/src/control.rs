@@ -1,4 +1,4 @@
-//! Which page controls the device: one at most.
+//! Control of the device: by one page at most.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use tokio::sync::watch;
@@ -6,7 +6,7 @@ use tokio::sync::watch;
 /// Number of a page.
 pub(crate) type Page = u64;
 
-/// Which page controls the device.
+/// Record of the page that controls the device.
 pub(crate) struct Control {
     next: AtomicU64,
     holder: watch::Sender<Option<Page>>,

@@ -21,7 +21,7 @@ pub(crate) const HEADER: usize = 40;
 /// Bytes of a bin.
 pub(crate) const BIN: usize = 40;
 
-/// What a frame is.
+/// Kind of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Kind {
@@ -31,7 +31,7 @@ pub(crate) enum Kind {
     Trace = 2,
 }
 
-/// What a page must not see.
+/// Data that a page must not see.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Masks {
     /// Torques.
@@ -47,7 +47,7 @@ pub(crate) struct Header {
     pub(crate) number: u32,
     /// Time at which the newest sample had arrived.
     pub(crate) unix_ms: f64,
-    /// Begin of the first bin.
+    /// Start of the first bin.
     pub(crate) begin_s: f64,
     /// Length of a bin.
     pub(crate) bin_s: f64,

@@ -1,4 +1,4 @@
-//! Which requests of the web are answered.
+//! Rules that decide which requests of the web are answered.
 //!
 //! A page of another site can make a browser send requests here, also to `localhost`, and
 //! by a name whose address it changes (DNS rebinding). So the host must be one of ours, a
@@ -30,7 +30,7 @@ const HEADERS: [(&str, &str); 7] = [
     ("cross-origin-embedder-policy", "require-corp"),
 ];
 
-/// Under which names this server is reached.
+/// Names under which this server is reached.
 #[derive(Clone, Debug)]
 pub(crate) struct Names {
     /// `http` or `https`.
@@ -71,7 +71,7 @@ fn authority(request: &axum::http::Request<Body>) -> Option<String> {
     }
 }
 
-/// Why a request is refused.
+/// Reason why a request is refused, with its status.
 fn refusal(
     names: &Names,
     method: &Method,

@@ -1,4 +1,4 @@
-//! What a page is told first: the tables that it shows, each from its one source.
+//! First message to a page: the tables that it shows, each from its one source.
 
 use crepitus_board::values::{is_effect, is_of_knee, with_preset};
 use crepitus_lesson::plans;

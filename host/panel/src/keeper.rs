@@ -64,7 +64,7 @@ const MOST_NOTE: usize = 500;
 /// Most notes that are kept.
 const MOST_NOTES: usize = 1_000;
 
-/// What the program around the panel knows and can do.
+/// Services that the program around the panel provides.
 pub trait Program<T> {
     /// An error as text for people.
     fn explain(&self, client: &mut Client<T>, error: Error) -> String;
@@ -81,7 +81,7 @@ pub trait Program<T> {
     /// A text for people.
     fn save_preset(&self, name: &str, preset: &Preset, replace: bool) -> Result<(), String>;
 
-    /// Whether the program has been asked to end.
+    /// Returns whether the program has been asked to end.
     fn has_ended(&self) -> bool;
 }
 
@@ -98,7 +98,7 @@ pub(crate) struct Keeper<'p, T> {
     program: &'p dyn Program<T>,
     shared: Arc<Shared>,
     inbox: Receiver<Order>,
-    /// Where sessions are stored.
+    /// Folder in which sessions are stored.
     sessions: Option<PathBuf>,
     samples: Samples,
     /// Parameters of the last block, as far as they are known.
@@ -369,7 +369,7 @@ impl<'p, T: Transport> Keeper<'p, T> {
         let _ = self.shared.frames.send(frame(&header, &bins));
     }
 
-    /// What pages must not see: in a blind trial the knee.
+    /// Data that pages must not see: in a blind trial the knee.
     fn masks(&self) -> Masks {
         let held = self.lesson.as_ref();
         let hidden = held.filter(|held| held.is_hidden(self.now_s));

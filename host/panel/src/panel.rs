@@ -23,13 +23,13 @@ pub struct Settings {
     /// The address at which other computers reach this one, with TLS; none: this computer
     /// alone.
     pub lan: Option<IpAddr>,
-    /// Where sessions and recordings are stored; none: nowhere.
+    /// Folder in which sessions and recordings are stored; none: nowhere.
     pub sessions: Option<PathBuf>,
     /// Recordings to look at.
     pub recordings: Vec<PathBuf>,
 }
 
-/// What is shown.
+/// Source of what is shown.
 #[derive(Clone, Debug)]
 pub enum Source {
     /// A device.
@@ -80,9 +80,9 @@ pub enum PanelError {
 /// The links to the page.
 #[derive(Clone, Debug)]
 pub struct Links {
-    /// Whoever has it may control.
+    /// Link whose holder may control.
     pub teacher: String,
-    /// Whoever has it may look on, and stop.
+    /// Link whose holder may look on, and stop.
     pub viewer: String,
     /// SHA-256 of the certificate, if there is one.
     pub certificate: Option<String>,

@@ -1,4 +1,4 @@
-//! What a page may ask for, and who may.
+//! Requests that a page may make, and the right that each needs.
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -16,7 +16,7 @@ pub(crate) enum Message {
     Request {
         /// The reply has it, too.
         id: u32,
-        /// What to do.
+        /// Requested action.
         #[serde(flatten)]
         request: Request,
     },
@@ -155,7 +155,7 @@ pub(crate) struct LessonBegin {
     pub(crate) repeats: Option<usize>,
 }
 
-/// Who may make a request.
+/// Pages that may make a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Right {
     /// Every page.
@@ -167,7 +167,7 @@ pub(crate) enum Right {
 }
 
 impl Request {
-    /// Whether it is one to the device.
+    /// Returns whether it is one to the device.
     pub(crate) fn needs_device(&self) -> bool {
         matches!(
             self,
@@ -184,7 +184,7 @@ impl Request {
         )
     }
 
-    /// Who may make it.
+    /// Pages that may make it.
     pub(crate) fn right(&self) -> Right {
         match self {
             Self::Stop | Self::Fault { .. } => Right::Anybody,

@@ -1,4 +1,4 @@
-//! What the threads of the panel share.
+//! Data and channels that the threads of the panel share.
 //!
 //! ```text
 //!  keeper ── frames, latest ──> server ──> pages
@@ -32,7 +32,7 @@ pub(crate) struct Order {
 /// Frames that a page may lag behind before it loses some: two seconds.
 const FRAMES: usize = 128;
 
-/// What pages show besides the curves: a message each, sent when it changes.
+/// Content of pages besides the curves: a message each, sent when it changes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Latest {
     pub(crate) status: Utf8Bytes,
@@ -57,7 +57,7 @@ impl Latest {
     }
 }
 
-/// What the threads share.
+/// Data and channels that the threads share.
 pub(crate) struct Shared {
     pub(crate) frames: broadcast::Sender<Bytes>,
     pub(crate) latest: watch::Sender<Latest>,
@@ -65,7 +65,7 @@ pub(crate) struct Shared {
     pub(crate) control: Control,
     pub(crate) tokens: Tokens,
     pub(crate) tickets: Tickets,
-    /// What a page is told first.
+    /// Content of the first message to a page.
     pub(crate) hello: Value,
     /// A folder whose recordings must not be opened: of a blind lesson.
     pub(crate) hidden: Arc<Mutex<Option<PathBuf>>>,

@@ -129,7 +129,7 @@ async fn write(mut sink: Sink, page: Page, shared: &Shared, mut replies: mpsc::R
     }
 }
 
-/// What is new for a page.
+/// Messages that are new for a page.
 fn news(sent: &Latest, now: &Latest) -> Vec<Message> {
     let pairs = sent.messages().into_iter().zip(now.messages());
     let changed = pairs
@@ -217,7 +217,7 @@ async fn execute(request: Request, page: Page, role: Role, shared: &Shared) -> O
     }
 }
 
-/// What another page has armed is not inherited.
+/// Gives control to a page; the arming by another page is not inherited.
 async fn take(page: Page, shared: &Shared) -> Outcome {
     let before = shared.control.holder();
     if before.is_some_and(|holder| holder != page) {

@@ -14,7 +14,7 @@ pub(crate) struct Strings {
 }
 
 impl Strings {
-    /// Of this language, or of the default.
+    /// Returns the strings of this language, or of the default.
     pub(crate) fn of(language: &str) -> Self {
         let found = LANGUAGES.iter().find(|(name, _)| *name == language);
         let (_, text) = found.unwrap_or(&LANGUAGES[0]);

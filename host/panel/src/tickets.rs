@@ -7,10 +7,10 @@ use std::collections::HashMap;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// How long one is valid.
+/// Time for which a page is valid.
 const VALID: Duration = Duration::from_mins(1);
 
-/// How many wait at most.
+/// Maximum number of pages that wait.
 const MOST: usize = 16;
 
 /// Pages that wait to be fetched.

@@ -17,7 +17,7 @@ pub(crate) struct Identity {
 }
 
 impl Identity {
-    /// Of the computer with this address.
+    /// Makes the identity of the computer with this address.
     ///
     /// # Errors
     /// No key can be made.

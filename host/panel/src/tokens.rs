@@ -1,9 +1,9 @@
-//! The two links: whoever has one may control, or look on.
+//! The two links: the holder of one may control, or look on.
 
 use std::fmt::Write;
 use subtle::ConstantTimeEq;
 
-/// What a page may do.
+/// Rights of a page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
     /// All.

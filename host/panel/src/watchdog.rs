@@ -22,11 +22,11 @@ const FRAMES: usize = 256;
 pub(crate) struct PageWatchdog {
     begun: Instant,
     is_controlled: AtomicBool,
-    /// When the oldest frame without an answer was made, ms.
+    /// Time at which the oldest frame without an answer was made, ms.
     waiting_ms: AtomicU64,
     /// Number of the last frame.
     latest: AtomicU32,
-    /// When the last frames were made, ms.
+    /// Times at which the last frames were made, ms.
     made_ms: [AtomicU64; FRAMES],
 }
 
@@ -83,7 +83,7 @@ impl PageWatchdog {
         self.is_controlled.store(false, Ordering::Relaxed);
     }
 
-    /// Whether torque must end.
+    /// Returns whether torque must end.
     pub(crate) fn has_expired(&self) -> bool {
         let waiting_ms = self.waiting_ms.load(Ordering::Relaxed);
         let is_late =
@@ -95,7 +95,7 @@ impl PageWatchdog {
         self.made_ms.get(usize::try_from(number).ok()? % FRAMES)
     }
 
-    /// At least 1.
+    /// Time since the watchdog began, plus 1 ms: at least 1.
     fn now_ms(&self) -> u64 {
         u64::try_from(self.begun.elapsed().as_millis()).map_or(u64::MAX, |ms| ms.saturating_add(1))
     }

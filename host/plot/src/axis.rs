@@ -17,7 +17,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// From `low` to `high`, with about `ticks` ticks.
+    /// Linear axis from `low` to `high`, with about `ticks` ticks.
     pub fn linear(low: f64, high: f64, ticks: u32) -> Self {
         let (low, high) = sound(low, high);
         let step = round_step((high - low) / f64::from(ticks.max(1)));
@@ -102,9 +102,9 @@ impl Axis {
         fewer
     }
 
-    /// Whether no label touches the next one.
+    /// Returns whether no label touches the next one.
     fn labels_fit(&self, px: f64) -> bool {
-        /// Between labels, as a share of the letters' size.
+        /// Least distance between labels: half the letters' size.
         const GAP: f64 = 0.5 * SIZE;
         let spans: Vec<(f64, f64)> = self
             .labels()

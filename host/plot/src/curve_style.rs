@@ -1,4 +1,4 @@
-//! How a curve is drawn: by colour, dashes and signs together, so that it is
+//! Style of a curve: drawn by colour, dashes and signs together, so that it is
 //! distinguishable for the colour-blind and in grey print.
 
 use maud::{Markup, PreEscaped, html};
@@ -29,7 +29,7 @@ impl CurveStyle {
         marker: Marker::Circle,
     };
 
-    /// Of the curve at this place. The numbers of colours, dashes and signs
+    /// Style of the curve at this place. The numbers of colours, dashes and signs
     /// have no common divisor: the first 360 curves all differ.
     pub fn of(place: usize) -> Self {
         Self {
@@ -48,7 +48,7 @@ impl CurveStyle {
         }
     }
 
-    /// For legends: a stretch of the curve, or its sign, filled.
+    /// Sample for legends: a stretch of the curve, or its sign, filled.
     pub(crate) fn sample(self, filled: bool) -> String {
         let mut drawing = Drawing::default();
         if !filled {

@@ -11,7 +11,7 @@ use crate::text::SIZE;
 /// Size of labels beside curves, CSS pixels.
 pub(crate) const LABEL: f64 = 13.0;
 
-/// Where a text has its point.
+/// Position of a text's point, relative to the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// Left of it.
@@ -32,7 +32,7 @@ impl Anchor {
     }
 }
 
-/// How a line is drawn.
+/// Style of a line.
 #[derive(Clone, Copy, Debug)]
 pub struct Stroke {
     /// Its colour.

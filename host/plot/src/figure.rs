@@ -7,22 +7,22 @@ use crate::palette::Ink;
 /// See the module.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// For files.
+    /// Name for files.
     pub name: &'static str,
-    /// Above all.
+    /// Heading of the figure, above all.
     pub title: &'static str,
-    /// What lines, patches and signs mean.
+    /// Meanings of lines, patches and signs.
     pub legend: Vec<Key>,
-    /// In order.
+    /// Charts, in order.
     pub charts: Vec<Chart>,
-    /// What one sees and how to read it.
+    /// Explanation of what one sees and of how to read it.
     pub caption: String,
 }
 
 /// One chart.
 #[derive(Clone, Debug)]
 pub struct Chart {
-    /// Above it.
+    /// Heading above the chart, if it has one.
     pub heading: Option<String>,
     /// The drawing.
     pub svg: Svg,

@@ -1,10 +1,10 @@
 //! Labels in one column at the right, each at the height of its curve's end or
 //! as near as its neighbours let it.
 
-/// From one line of text to the next, CSS pixels.
+/// Distance from one line of text to the next, CSS pixels.
 pub const LINE: f64 = 15.0;
 
-/// For each wished height the height given, between `top` and `bottom`, no two
+/// Heights given, one for each wished height, between `top` and `bottom`, no two
 /// closer than a line: labels that crowd stand around the middle of what they
 /// wish. `None` where there are more labels than lines.
 pub fn spread(wishes: &[f64], top: f64, bottom: f64) -> Option<Vec<f64>> {

@@ -1,4 +1,4 @@
-//! How much room the axes of charts need at their edges, so that no label is
+//! Room that the axes of charts need at their edges, so that no label is
 //! cut.
 
 use crate::panel::Panel;
@@ -8,13 +8,13 @@ use crate::text::{LINE, SIZE, lines, width};
 /// The inside of a pair of axes, CSS pixels of the whole chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// Where x begins.
+    /// Left edge, at which x begins.
     pub left: f64,
-    /// Where y ends.
+    /// Top edge, at which y ends.
     pub top: f64,
-    /// Where x ends.
+    /// Right edge, at which x ends.
     pub right: f64,
-    /// Where y begins.
+    /// Bottom edge, at which y begins.
     pub bottom: f64,
 }
 

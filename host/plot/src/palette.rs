@@ -14,12 +14,12 @@ use maud::Render;
 pub struct Ink {
     /// The name of the style sheet's variable.
     pub name: &'static str,
-    /// On light paper, and in print: `#rrggbb`, of one ink only, unless the
+    /// Colour on light paper, and in print: `#rrggbb`, of one ink only, unless the
     /// dark colours are the same, too.
     pub light: &'static str,
-    /// On dark paper.
+    /// Colour on dark paper.
     pub dark: &'static str,
-    /// In a paper: lines that stand together differ in lightness, too.
+    /// Colour in a paper: lines that stand together differ in lightness, too.
     pub print: &'static str,
 }
 
@@ -40,14 +40,14 @@ impl Ink {
     }
 }
 
-/// As the value of an attribute.
+/// Writes the light colour as the value of an attribute.
 impl Render for Ink {
     fn render_to(&self, out: &mut String) {
         out.push_str(self.light);
     }
 }
 
-/// Lines that are told apart by colour alone, in a paper, from dark to light: blue, vermillion,
+/// Lines that are distinguished by colour alone, in a paper, from dark to light: blue, vermillion,
 /// green and purple of Okabe and Ito at lightnesses (CIELAB) of 27, 44, 58 and 71, beside black
 /// at 7. So they differ in grey, and to those who see no difference between red and green.
 const PRINTED: [&str; 4] = ["#004078", "#b34600", "#2a9d79", "#dd98c2"];
@@ -215,7 +215,7 @@ mod tests {
         [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
     }
 
-    /// What a dichromat sees: Machado, Oliveira and Fernandes, "A physiologically-based model for
+    /// Vision of a dichromat: Machado, Oliveira and Fernandes, "A physiologically-based model for
     /// simulation of color vision deficiency", IEEE TVCG 15(6), 2009, severity 1.
     const DEUTERANOPIA: [[f64; 3]; 3] = [
         [0.367_322, 0.860_646, -0.227_968],

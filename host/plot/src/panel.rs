@@ -61,7 +61,7 @@ impl<'d> Panel<'d> {
         self
     }
 
-    /// At least this much room at the right, CSS pixels.
+    /// Reserves at least this much room at the right, CSS pixels.
     #[must_use]
     pub fn right(mut self, right: f64) -> Self {
         self.right = right;

@@ -28,12 +28,12 @@ const HALF: f64 = 480.0;
 /// Room that a picture adds at the left of a chart, CSS pixels.
 pub(crate) const MARGIN: f64 = 8.0;
 
-/// How wide a picture is printed.
+/// Width at which a picture is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Column {
-    /// Within one column of text.
+    /// Width of one column of text.
     One,
-    /// Across both.
+    /// Width of both columns.
     Two,
 }
 
@@ -55,7 +55,7 @@ impl Column {
     }
 }
 
-/// What charts are laid out for.
+/// Medium for which charts are laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Paper {
     /// A page on a screen.

@@ -8,7 +8,7 @@ use crate::palette::{GRID, Ink, LEVEL, PAPER, TEXT};
 use crate::simplify::simplify;
 use crate::thinned::Point;
 
-/// Of a stretch that must be seen, CSS pixels.
+/// Least width of a stretch that must be seen, CSS pixels.
 const NARROWEST: f64 = 3.0;
 
 /// Invisible distance, CSS pixels.
@@ -29,7 +29,7 @@ pub struct Plot {
 pub struct Mark {
     /// Its value of x.
     pub at: f64,
-    /// What happened, in a few words.
+    /// Event at this moment, in a few words.
     pub name: String,
 }
 

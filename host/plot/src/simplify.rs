@@ -30,7 +30,7 @@ pub fn simplify(points: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Of a point to the stretch between two others.
+/// Distance of a point from the stretch between two others.
 fn distance(point: (f64, f64), from: (f64, f64), to: (f64, f64)) -> f64 {
     let vector = |a: (f64, f64), b: (f64, f64)| (b.0 - a.0, b.1 - a.1);
     let (dx, dy) = vector(from, to);

@@ -1,10 +1,10 @@
-//! How much room a text takes, without asking a font: an upper bound for the
+//! Room that a text takes, without asking a font: an upper bound for the
 //! sans-serif fonts in use, of which DejaVu Sans and Verdana are the widest.
 
 /// Size of the text of charts, CSS pixels.
 pub const SIZE: f64 = 15.0;
 
-/// From one line of text to the next, CSS pixels.
+/// Distance from one line of text to the next, CSS pixels.
 pub const LINE: f64 = 18.0;
 
 /// Most that a text is wide, CSS pixels.
@@ -12,7 +12,7 @@ pub fn width(text: &str, size: f64) -> f64 {
     size * text.chars().map(em).sum::<f64>()
 }
 
-/// Of a letter, as a share of the size.
+/// Width of a letter, as a share of the size.
 fn em(letter: char) -> f64 {
     match letter {
         'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' | '·' | ' '
@@ -27,7 +27,7 @@ fn em(letter: char) -> f64 {
     }
 }
 
-/// In one line, or in two if it is too long for this room.
+/// The text in one line, or in two if it is too long for this room.
 pub(crate) fn lines(text: &str, room: f64) -> Vec<&str> {
     if width(text, SIZE) > room {
         // The unit goes to the second line.

@@ -8,14 +8,14 @@
 /// A point in the units of the data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// To the right.
+    /// Coordinate to the right.
     pub x: f64,
     /// Upwards.
     pub y: f64,
 }
 
 impl Point {
-    /// From its coordinates.
+    /// Creates a point from its coordinates.
     pub fn new(x: f64, y: f64) -> Self {
         Self { x, y }
     }
@@ -105,7 +105,7 @@ impl Thinned {
         self.per_bin *= 2;
     }
 
-    /// Whether nothing was appended.
+    /// Returns whether nothing was appended.
     pub fn is_empty(&self) -> bool {
         self.bins.is_empty()
     }
@@ -128,7 +128,7 @@ impl Thinned {
         points
     }
 
-    /// How many bins there are.
+    /// Number of stored bins.
     pub fn stored(&self) -> usize {
         self.bins.len()
     }

@@ -15,7 +15,7 @@ use object::ObjectTracker;
 pub use summary::RecordingSummary;
 use summary::Tally;
 
-/// What follows from a row and those before it.
+/// Values derived from a row and those before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Derived {
     /// The imaginary object.
@@ -35,7 +35,7 @@ pub struct Analysis<'r> {
     /// The parameters of the last row, if they are known.
     values: Option<Values>,
     rows: u64,
-    /// Of the ticks alone.
+    /// Recount of the ticks alone.
     recount: Recount<'r>,
     /// Torque of the motor at the joint by its current, N·m/A; NaN if unknown.
     nm_per_a: f64,

@@ -12,7 +12,7 @@ const CHANGE_S: f64 = 2e-3;
 /// Finds the pushes: current of the motor before torque is on.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ArmingPushes {
-    /// From the first to the last row of one.
+    /// Times of the first and the last row of a push, s.
     under_way: Option<(f64, f64)>,
 }
 

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 /// Limit of listed gaps; further ones are only counted.
 const LISTED_GAPS: usize = 1_000;
 
-/// Where a subscription begins.
+/// Start of a subscription.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Begin {
     /// Its first tick.
@@ -34,7 +34,7 @@ pub struct Begin {
     pub start: u8,
 }
 
-/// Why samples are missing.
+/// Cause of missing samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cause {
@@ -51,7 +51,7 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// In a few words.
+    /// Returns the cause in a few words.
     pub const fn text(self) -> &'static str {
         match self {
             Self::Device => "dropped by the device",
@@ -72,7 +72,7 @@ pub struct Gap {
     pub first_tick: u64,
     /// Number of missing samples.
     pub samples: u64,
-    /// Why.
+    /// Cause of the gap.
     pub cause: Cause,
 }
 
@@ -86,11 +86,11 @@ pub struct Totals {
     pub received: u64,
     /// Missing, for any reason.
     pub dropped: u64,
-    /// Of these, not sent by the device.
+    /// Part of the missing samples that the device did not send.
     pub by_device: u64,
-    /// Of these, produced while the connection was lost.
+    /// Part of the missing samples that was produced while the connection was lost.
     pub not_connected: u64,
-    /// Of these, damaged in the file.
+    /// Part of the missing samples that is damaged in the file.
     pub damaged: u64,
 }
 
@@ -121,7 +121,7 @@ pub struct Segment {
 pub struct Books {
     /// The sums.
     pub totals: Totals,
-    /// In order.
+    /// Segments in order of their rows.
     pub segments: Vec<Segment>,
     /// The first thousand gaps.
     pub gaps: Vec<Gap>,
@@ -153,7 +153,7 @@ impl Books {
         self.totals.dropped += samples;
     }
 
-    /// So many samples before the first one are damaged.
+    /// Records that so many samples before the first one are damaged.
     fn damaged_before(&mut self, samples: u64) {
         let Some(segment) = self.segments.first_mut() else {
             return;
@@ -191,16 +191,16 @@ impl Books {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ledger {
     books: Books,
-    /// Of the current segment.
+    /// Next tick of the current segment.
     next_tick: u64,
     start: Option<u8>,
     /// The device's own count.
     said: u32,
-    /// Of all segments, as they were said to begin.
+    /// Beginnings of all segments, as they were reported.
     begins: Vec<Begin>,
     /// A part of the file before the next block is damaged.
     is_damaged: bool,
-    /// So is the part that says where the first subscription begins.
+    /// The part that says where the first subscription begins is damaged, too.
     begin_is_unknown: bool,
 }
 
@@ -469,7 +469,7 @@ mod tests {
         assert!(!recount(&swapped).is_empty());
     }
 
-    /// Where bytes are out of order no part of the file reads as damaged: what the recorder had says so.
+    /// Damage by bytes out of order: no part of the file reads as damaged, what the recorder had says so.
     #[test]
     fn a_gap_of_samples_that_the_recorder_had_is_damaged() {
         let causes = |received| {

@@ -22,7 +22,7 @@ use std::io::{self, BufWriter, ErrorKind};
 /// Samples of a message: 1 kHz.
 const SAMPLES: u64 = 20;
 
-/// Of `foxglove.Log`.
+/// Levels of `foxglove.Log`.
 const INFO: u8 = 2;
 const WARNING: u8 = 3;
 
@@ -61,7 +61,7 @@ impl Range {
         self.count += 1;
     }
 
-    /// As members of a message; null where nothing was measured.
+    /// Adds the range as members to a message; null where nothing was measured.
     fn members(&self, name: &str, message: &mut Value) {
         let mean = self.sum / f64::from(self.count);
         let parts = if self.count == 0 {

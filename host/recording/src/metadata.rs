@@ -41,7 +41,7 @@ impl From<&Identity> for Controller {
 pub struct Metadata {
     /// Version of recordings.
     pub format: u32,
-    /// Of this recording alone.
+    /// Identifier of this recording alone.
     pub id: String,
     /// Title.
     pub title: String,

@@ -30,7 +30,7 @@ pub struct ParameterSet {
 pub struct History(pub Vec<ParameterSet>);
 
 impl History {
-    /// Of each set the row where it took effect, and in a few words what has
+    /// Returns for each set the row where it took effect, and in a few words what has
     /// changed.
     pub fn changes(&self) -> impl Iterator<Item = (u64, String)> {
         self.0.iter().map(|set| {

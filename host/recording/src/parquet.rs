@@ -51,7 +51,7 @@ pub(crate) struct About {
     pub(crate) is_complete: bool,
     pub(crate) parameters: History,
     pub(crate) books: Books,
-    /// Of the file that it was made of, in sentences.
+    /// Damage of the file that it was made of, in sentences.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) damage: Vec<String>,
 }

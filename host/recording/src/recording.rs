@@ -25,7 +25,7 @@ pub enum ReadError {
     Io {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// Cause of the failure.
         source: io::Error,
     },
     /// Something else.
@@ -58,7 +58,7 @@ pub enum ReadError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Damage that was found in it.
         findings: Findings,
     },
 }
@@ -296,7 +296,7 @@ impl Recording {
     }
 }
 
-/// So many ticks, s.
+/// Duration of this number of ticks, s.
 #[expect(clippy::cast_precision_loss, reason = "centuries of ticks")]
 pub fn seconds(ticks: u64) -> f64 {
     ticks as f64 * TICK_S
@@ -339,10 +339,10 @@ struct LogRows<'r> {
     reader: LogReader<BufReader<&'r File>>,
     in_force: InForce<'r>,
     samples: Samples,
-    /// Of the block at hand.
+    /// Rows of the block at hand.
     block: std::vec::IntoIter<Row>,
     count: u64,
-    /// Of the file when it was opened: it may be growing.
+    /// Number of rows of the file when it was opened: it may be growing.
     rows: u64,
 }
 

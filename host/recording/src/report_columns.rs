@@ -39,7 +39,7 @@ const fn number(name: &'static str) -> Column {
 /// See the module.
 #[derive(Debug)]
 pub struct ReportColumns {
-    /// Of the symptoms whose settings were the same whenever they were on.
+    /// Settings of symptoms: those that were the same whenever the symptom was on.
     settings: EffectSettings,
     /// Crepitus was on at any time, or may have been.
     has_crepitus: bool,
@@ -50,10 +50,10 @@ pub struct ReportColumns {
 }
 
 impl ReportColumns {
-    /// So many at the begin are those of every recording.
+    /// Number of columns at the beginning that are those of every recording.
     pub const ALWAYS: usize = ALWAYS.len();
 
-    /// Of a recording with these parameters.
+    /// Returns the columns of a recording with these parameters.
     pub fn of(history: &History) -> Self {
         let mut in_force = history.in_force();
         let sets = history.0.iter().filter_map(|set| {

@@ -65,7 +65,7 @@ pub struct Row {
     pub current_a: Option<f32>,
     /// Mean current of the vibration actuator's coil over five ticks, A.
     pub coil_a: Option<f32>,
-    /// Of the parameters in force.
+    /// Revision of the parameters in force.
     pub revision: u32,
     /// Phase, limit and the rest.
     pub flags: SampleFlags,
@@ -73,12 +73,12 @@ pub struct Row {
     pub phases: Phases,
 }
 
-/// What lies between a row and the one before it.
+/// Step between a row and the one before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Nothing: the next tick.
+    /// No gap: the next tick.
     Next,
-    /// So many missing samples.
+    /// Gap: the number of missing samples.
     Missing(u64),
     /// A restart of the drive: how long it took is not known.
     Restart,
@@ -145,7 +145,7 @@ impl Row {
         }
     }
 
-    /// What happened in the tick: `break`, `stick`, `both`, or nothing.
+    /// Event of the tick: `break`, `stick`, `both`, or nothing.
     pub fn event(&self) -> &'static str {
         let has = |bit| self.flags.has(bit);
         match (has(SampleFlags::BREAK), has(SampleFlags::STICK)) {
@@ -171,7 +171,7 @@ impl Row {
         }
     }
 
-    /// As an object, with the names of [`COLUMNS`] and the same numbers; what
+    /// Returns the row as an object, with the names of [`COLUMNS`] and the same numbers; what
     /// is empty in a line is null.
     pub fn to_json(&self) -> Value {
         let mut line = String::new();

@@ -10,13 +10,13 @@ use crepitus_protocol::{TICKS_PER_S, Values};
 #[derive(Clone, Debug)]
 pub struct Samples {
     shaft: Shaft,
-    /// Of the first block since the drive has started.
+    /// Start of the count, at the first block since the drive has started.
     begin: Begin,
     next_tick: u64,
     has_begun: bool,
 }
 
-/// Begin of a count of ticks.
+/// Start of a count of ticks.
 #[derive(Clone, Copy, Debug, Default)]
 struct Begin {
     start: u8,

@@ -1,5 +1,5 @@
 //! Angle and speed from counts, by the drive's own estimator: the same numbers. The counts of a
-//! recording are from the angle's zero; where that is set anew they jump, and the shaft does not.
+//! recording are from the angle's zero; where that is set again they jump, and the shaft does not.
 
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::render::input_check::InputLimits;

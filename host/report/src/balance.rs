@@ -34,7 +34,7 @@ pub struct Term {
     pub effect: String,
     /// Description.
     pub what: String,
-    /// Where it counts.
+    /// Account in which it counts.
     pub account: Account,
     /// J.
     pub joule: f64,
@@ -57,7 +57,7 @@ impl Term {
 /// The terms of a run: supplied = stored + lost + rendered.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Balance {
-    /// From the hand to the motor and back.
+    /// Terms in order from the hand to the motor and back.
     pub terms: Vec<Term>,
     /// Residual, J.
     pub residual_j: f64,

@@ -1,4 +1,4 @@
-//! Which columns of the trace the report reads, and one row of them.
+//! Columns of the trace that the report reads, and one row of them.
 //!
 //! Columns are looked up by name, once. A missing column is NaN in
 //! every [`Sample`], and NaN is not drawn.
@@ -13,7 +13,7 @@ use crepitus_scene::trace::Column;
 pub struct Setup<'a> {
     /// The columns of every row that will come.
     pub columns: &'a [Column],
-    /// How many rows will come, about. Zero if it is not known; a wrong
+    /// Approximate number of rows that will come. Zero if it is not known; a wrong
     /// number costs resolution, nothing else.
     pub rows_expected: u64,
     /// Time from one row to the next, s. The spectrum needs it.
@@ -79,7 +79,7 @@ impl Sample {
     }
 }
 
-/// Where in a row each value stands.
+/// Position of each value in a row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Channels {
     time: Option<usize>,
@@ -143,7 +143,7 @@ impl Channels {
         }
     }
 
-    /// Whether crepitus is off in a row: its phase is NaN, and the column is one of those, from
+    /// Returns whether crepitus is off in a row: its phase is NaN, and the column is one of those, from
     /// `may_lack_from` on, in which NaN means "no value".
     pub(crate) fn is_off(&self, row: &[f64], may_lack_from: usize) -> bool {
         let phase = self.phase.filter(|place| *place >= may_lack_from);

@@ -71,7 +71,7 @@ fn signs(plot: &mut Plot, points: &[Point]) {
     }
 }
 
-/// From each beat to the next of the same stretch: (s, ms).
+/// Intervals from each beat to the next of the same stretch: (s, ms).
 fn intervals(beats: &[Beat]) -> Vec<Point> {
     between(beats, |from, to| to.time_s - from.time_s)
 }

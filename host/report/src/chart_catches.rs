@@ -1,4 +1,4 @@
-//! Where a spastic muscle caught, against the speed of the stretch.
+//! Angles at which a spastic muscle caught, against the speed of the stretch.
 
 use crate::chart_symptoms::{WIDE, WIDTH};
 use crate::symptoms::Symptom;
@@ -71,7 +71,7 @@ fn caught(symptom: &Symptom) -> Vec<Point> {
     caught.collect()
 }
 
-/// Where the settings put a catch.
+/// Angle at which the settings put a catch, over the speed of the stretch.
 struct Law {
     /// (deg/s, deg)
     line: Vec<Point>,

@@ -1,4 +1,4 @@
-//! Where the energy of a plant came from and where it went, as bars.
+//! Energy balance of a plant as bars: where the energy came from and where it went.
 
 use crepitus_plot::number::rounded;
 use crepitus_plot::palette::{AXIS, CURVES, Ink, OBJECT, TEXT, TORQUE};
@@ -12,14 +12,14 @@ const WIDTH: f64 = 960.0;
 const HEAD: f64 = 34.0;
 const ROW: f64 = 27.0;
 const BAR: f64 = 17.0;
-/// Where bars begin, and where the longest ends.
+/// Start of the bars, and end of the longest.
 const LEFT: f64 = 250.0;
 const RIGHT: f64 = 850.0;
 
 /// Terms below this share of the whole are one bar together.
 const SMALL: f64 = 0.002;
 
-/// What each account is drawn in.
+/// Ink of each account.
 fn ink(account: Account) -> Ink {
     match account {
         Account::Given => OBJECT,

@@ -13,7 +13,7 @@ use crate::phases::{self, shade};
 use crate::plant::{LEG, Plant};
 
 const HEIGHT: f64 = 220.0;
-/// With the numbers of the time.
+/// Height of the last panel, with the numbers of the time.
 const LAST_HEIGHT: f64 = 260.0;
 
 pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {

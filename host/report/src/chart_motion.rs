@@ -9,10 +9,10 @@ use crate::collector::Figures;
 use crate::plant::{Follower, LEG};
 
 const HEIGHT: f64 = 190.0;
-/// With the numbers of the time.
+/// Height that the numbers of the time add to a panel.
 const FOOT: f64 = 45.0;
 
-/// From rad to degrees, of y.
+/// Converts y from rad to degrees.
 pub(crate) fn degrees(points: &[Point]) -> Vec<Point> {
     points
         .iter()
@@ -32,7 +32,7 @@ pub(crate) fn time_axis(figures: &Figures, points: &[Point]) -> Axis {
     Axis::linear(from, to, 8)
 }
 
-/// What moves beside the shaft, in degrees.
+/// Lines of a [`Follower`], which moves beside the shaft, in degrees.
 #[derive(Default)]
 struct Beside {
     angle: Vec<Point>,

@@ -111,7 +111,7 @@ fn chart(
     }
 }
 
-/// From rad to the units of the axes: degrees and mrad.
+/// Converts from rad to the units of the axes: degrees and mrad.
 fn shown(angle: f64, theta: f64) -> Point {
     Point::new(angle.to_degrees(), 1e3 * theta)
 }

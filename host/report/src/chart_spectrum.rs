@@ -19,7 +19,7 @@ const STRIP_ROW: f64 = 22.0;
 
 const LOWEST_HZ: f64 = 0.5;
 const HIGHEST_HZ: f64 = 500.0;
-/// Below this, lines belong to the motion rather than to the joint.
+/// Frequency below which lines belong to the motion rather than to the joint.
 const MOTION_HZ: f64 = 10.0;
 /// Bands in use for the vibration of joints; every second one is shaded.
 const BANDS: [(f64, f64, &str, bool); 3] = [
@@ -117,7 +117,7 @@ pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     })
 }
 
-/// What makes a peak a line: it is so many times as high as the lowest point
+/// Criterion of a line: a peak that is so many times as high as the lowest point
 /// of either side within so many bins.
 #[derive(Clone, Copy)]
 struct Line {
@@ -153,7 +153,7 @@ fn strongest_line(points: &[Point], Line { times, bins }: Line) -> Option<Point>
         .reduce(|best, p| if p.y > best.y { p } else { best })
 }
 
-/// How the spectra came about.
+/// Method of the spectra, in words.
 fn method(spectrum: &Spectrum) -> String {
     let windows = match spectrum.segments {
         1 => "one Hann window".to_owned(),

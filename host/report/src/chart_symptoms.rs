@@ -22,7 +22,7 @@ use crepitus_plot::{
 use crepitus_scene::trace::{SymptomEvent, Word};
 
 pub(crate) const WIDTH: f64 = 960.0;
-/// Of lines behind others, which may cover them.
+/// Width of lines behind others, which may cover them.
 pub(crate) const WIDE: f64 = 5.5;
 const HEIGHT: f64 = 380.0;
 const ANGLE_HEIGHT: f64 = 120.0;
@@ -165,7 +165,7 @@ fn torque_axis(nm: impl Iterator<Item = f64>) -> Axis {
     Axis::covering(nm.chain([0.0]), 6)
 }
 
-/// Whether an event begins something: of these a chart over time says the names.
+/// Returns whether an event begins something: of these a chart over time says the names.
 fn begins(word: Word) -> bool {
     !matches!(
         word,
@@ -173,7 +173,7 @@ fn begins(word: Word) -> bool {
     )
 }
 
-/// Where a path has too many strokes: its range in either direction.
+/// Range of a path with too many strokes, in either direction.
 fn bands(path: &Path) -> Vec<(Ink, Vec<Point>, Vec<Point>)> {
     if path.strokes().is_some() {
         return Vec::new();
@@ -191,7 +191,7 @@ fn bands(path: &Path) -> Vec<(Ink, Vec<Point>, Vec<Point>)> {
         .collect()
 }
 
-/// The signs of a symptom's events, if they are few enough to be told apart.
+/// The signs of a symptom's events, if they are few enough to be distinguished.
 fn signs(plot: &mut Plot, symptom: &Symptom, x: impl Fn(&SymptomEvent) -> f64) {
     let events = &symptom.timeline.events;
     if events.len() > MOST_SIGNS {

@@ -77,7 +77,7 @@ pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     })
 }
 
-/// How often the object broke loose.
+/// Number of times that the object broke loose, in words.
 fn breaks(number: u64) -> String {
     match number {
         0 => "never broke loose".to_owned(),

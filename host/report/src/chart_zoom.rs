@@ -143,7 +143,7 @@ pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     })
 }
 
-/// What the charts show.
+/// Description of what the charts show.
 fn words(figures: &Figures, happened: bool) -> &'static str {
     let mut symptoms = figures.symptoms.iter().flat_map(|all| &all.list);
     if !figures.has_object {
@@ -165,7 +165,7 @@ fn words(figures: &Figures, happened: bool) -> &'static str {
     }
 }
 
-/// Whether the torque at the hand is known for the cycles.
+/// Returns whether the torque at the hand is known for the cycles.
 fn feels(window: &Window) -> bool {
     !window.hand_fast.is_empty()
 }

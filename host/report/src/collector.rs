@@ -46,7 +46,7 @@ pub struct Collector {
     welch: Option<Welch>,
     plant: Option<PlantCollector>,
     symptoms: Option<Symptoms>,
-    /// Only where there is a hand.
+    /// Fast part of the hand torque; only where there is a hand.
     fast: Option<FastPart>,
     marks: Vec<Mark>,
     pushes: Vec<(f64, f64)>,
@@ -76,18 +76,18 @@ pub struct Figures {
     pub(crate) plant: Option<Plant>,
     pub(crate) symptoms: Option<Symptoms>,
     pub(crate) balance: Option<Balance>,
-    /// When parameters changed, or the device restarted.
+    /// Times at which parameters changed, or the device restarted.
     pub(crate) marks: Vec<Mark>,
-    /// When the motor was pushed to arm it, s.
+    /// Start and end of each push of the motor to arm it, s.
     pub(crate) pushes: Vec<(f64, f64)>,
-    /// From the last row before missing ones to the first one after them, s.
+    /// Times of the last row before missing ones and of the first one after them, s.
     pub(crate) gaps: Vec<(f64, f64)>,
     /// Measured curves.
     pub(crate) comparisons: Vec<Comparison>,
 }
 
 impl Figures {
-    /// How far each measured curve is from the run.
+    /// Difference of each measured curve from the run.
     pub fn differences(&self) -> Vec<Difference> {
         overlay::differences(&self.comparisons)
     }
@@ -124,13 +124,13 @@ impl Figures {
         pushes.chain(self.marks.iter().cloned()).collect()
     }
 
-    /// As [`draw_marks`](Self::draw_marks), with the beginnings of pushes.
+    /// Draws what [`draw_marks`](Self::draw_marks) draws, with the beginnings of pushes.
     pub(crate) fn draw_motor_marks(&self, plot: &mut Plot) {
         plot.blank(&self.gaps);
         plot.moments(&self.motor_marks());
     }
 
-    /// How many bins of a [`Course`](crate::course::Course) to draw as one,
+    /// Number of bins of a [`Course`](crate::course::Course) to draw as one,
     /// if there are too many cycles to draw lines.
     pub(crate) fn bins(&self) -> Option<usize> {
         self.whole
@@ -194,7 +194,7 @@ impl Collector {
         self.comparisons.extend(found);
     }
 
-    /// From this column on a row may have no value: NaN is none there.
+    /// Sets the column from which on a row may have no value: NaN is none there.
     pub fn may_lack_from(&mut self, column: usize) {
         self.always = column;
     }

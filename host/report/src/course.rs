@@ -1,4 +1,4 @@
-//! How a column goes over a whole run: a line; or, where cycles are too many
+//! Course of a column over a whole run: a line; or, where cycles are too many
 //! to draw each, the range that it covers and its mean.
 
 use crate::envelope::{Bin, Envelope};
@@ -12,7 +12,7 @@ pub(crate) struct Course {
     envelope: Envelope,
 }
 
-/// What an axis shows of a course.
+/// Part of a course that an axis shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shown {
     pub(crate) low: f64,
@@ -50,7 +50,7 @@ impl Course {
         self.line.is_empty()
     }
 
-    /// Whether it ever is anything but zero.
+    /// Returns whether it ever is anything but zero.
     pub(crate) fn is_zero(&self) -> bool {
         let (low, high) = self.extent();
         low == 0.0 && high == 0.0

@@ -120,7 +120,7 @@ impl Envelope {
         self.since = f64::NAN;
     }
 
-    /// From here on the object is in no phase, until a row or an event says so.
+    /// Records that the object is in no phase from here on, until a row or an event reports one.
     pub(crate) fn off(&mut self, time: f64) {
         self.advance(time);
         self.phase = None;
@@ -243,7 +243,7 @@ impl Envelope {
         merged(&self.bins, count.max(1))
     }
 
-    /// How many bins a few whole cycles take on average.
+    /// Average number of bins that a few whole cycles take.
     pub(crate) fn bins_for_cycles(&self) -> usize {
         const CYCLES: u64 = 3;
         const FEWEST_BINS: usize = 60;

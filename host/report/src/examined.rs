@@ -1,4 +1,4 @@
-//! What an examiner would note of each symptom, in words.
+//! Notes that an examiner would make on each symptom, in words.
 
 use crate::collector::Figures;
 use crate::symptoms::found::{Bout, Found, Met};
@@ -124,7 +124,7 @@ fn ends(found: &Found, rows: &mut Vec<Row>) {
     }
 }
 
-/// How soon an end had its largest torque, and how far the joint was pressed on.
+/// Largest torque of an end, the angle within which it had that, and how far the joint was pressed on.
 fn pressed(met: &Met) -> String {
     let (within, beyond) = (angle(met.within_rad), angle(met.beyond_rad));
     let on = if within == beyond {
@@ -198,7 +198,7 @@ fn beats(found: &Found, settings: Option<&ClonusSettings>, rows: &mut Vec<Row>) 
         let stretch = format!("{} at {}", angle(event.angle_rad), speed(event.omega_rad_s));
         rows.push((
             format!("stretch {n}"),
-            format!("{stretch}: {}", lasted(bout, found.beats_are_told)),
+            format!("{stretch}: {}", lasted(bout, found.beats_are_counted)),
         ));
     }
     if found.bouts.is_empty() {
@@ -224,17 +224,17 @@ fn beats(found: &Found, settings: Option<&ClonusSettings>, rows: &mut Vec<Row>) 
     }
 }
 
-/// How many beats, how long, and the grade that the Spinal Cord Assessment Tool for
-/// Spastic Reflexes gives for that. Where the torque is of more than clonus, beats cannot be told
-/// apart, and its phases say how long it lasted.
-fn lasted(bout: &Bout, beats_are_told: bool) -> String {
+/// Number of beats, their duration, and the grade that the Spinal Cord Assessment Tool for
+/// Spastic Reflexes gives for that. Where the torque is of more than clonus, beats cannot be
+/// distinguished, and the phases of clonus say how long it lasted.
+fn lasted(bout: &Bout, beats_are_counted: bool) -> String {
     let until_s = match bout.end {
-        Some((_, end_s)) if !beats_are_told => end_s,
+        Some((_, end_s)) if !beats_are_counted => end_s,
         _ => bout.last_s,
     };
     let length_s = until_s - bout.start.time_s;
     // Held longer, the muscle might have beaten.
-    if beats_are_told && bout.beats == 0 {
+    if beats_are_counted && bout.beats == 0 {
         match bout.end {
             Some((Word::Done, _)) => {}
             Some(_) => return "let go before the first beat: no grade".to_owned(),
@@ -242,20 +242,20 @@ fn lasted(bout: &Bout, beats_are_told: bool) -> String {
         }
     }
     let (grade, words) = match length_s {
-        _ if beats_are_told && bout.beats == 0 => (0, "no reaction"),
+        _ if beats_are_counted && bout.beats == 0 => (0, "no reaction"),
         s if s < 3.0 => (1, "mild, less than 3 s"),
         s if s <= 10.0 => (2, "moderate, 3 to 10 s"),
         _ => (3, "severe, more than 10 s"),
     };
     let beats = match bout.beats {
-        _ if !beats_are_told => "beats that cannot be told apart".to_owned(),
+        _ if !beats_are_counted => "beats that cannot be told apart".to_owned(),
         1 => "1 beat".to_owned(),
         n => format!("{n} beats"),
     };
     let end = match bout.end {
         Some((Word::Done, _)) => "ended by itself;",
         Some(_) => "ended as the muscle was let go, so at least",
-        None if !beats_are_told => return format!("{beats}, went on to the end"),
+        None if !beats_are_counted => return format!("{beats}, went on to the end"),
         None => "went on to the end, so at least",
     };
     format!(

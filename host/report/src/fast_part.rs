@@ -26,7 +26,7 @@ use crate::channels::Sample;
 /// A row or an event on its way.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Seen {
-    /// With its fast part.
+    /// Row with its fast part.
     Row(Sample),
     Event(EventRecord),
 }

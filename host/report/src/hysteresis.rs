@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-/// What θ did in one bin of angle, rad.
+/// Range of θ in one bin of angle, rad.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Range {
     pub(crate) angle: f64,
@@ -101,7 +101,7 @@ impl Hysteresis {
         }
     }
 
-    /// How far the shaft moved in all, rad.
+    /// Total travel of the shaft, rad.
     pub(crate) fn travel(&self) -> f64 {
         self.travel
     }

@@ -16,7 +16,7 @@ const FOOT: f64 = 45.0;
 /// Bins of a line: more than a chart has pixels.
 const LINE: usize = 1600;
 
-/// What can be measured and compared.
+/// Quantity that can be measured and compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Angle of the joint.
@@ -72,7 +72,7 @@ impl Quantity {
         }
     }
 
-    /// From the units of the column to those that are shown.
+    /// Converts a value from the units of the column to those that are shown.
     fn shown(self, value: f64) -> f64 {
         match self {
             Self::Angle | Self::Velocity => value.to_degrees(),
@@ -85,7 +85,7 @@ impl Quantity {
 /// of the quantity's column.
 #[derive(Clone, Debug)]
 pub struct Measured {
-    /// What was measured.
+    /// Measured quantity.
     pub quantity: Quantity,
     /// The times.
     pub time_s: Vec<f64>,
@@ -93,7 +93,7 @@ pub struct Measured {
     pub value: Vec<f64>,
 }
 
-/// How far a measured curve is from that of a run.
+/// Difference of a measured curve from that of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Difference {
     /// The column of the trace, which names the unit of the differences.
@@ -223,7 +223,7 @@ impl Sums {
     }
 }
 
-/// How far each is from the run.
+/// Difference of each from the run.
 pub(crate) fn differences(comparisons: &[Comparison]) -> Vec<Difference> {
     comparisons.iter().map(Comparison::difference).collect()
 }

@@ -6,7 +6,7 @@ use crepitus_plot::{Key, Plot, Sign};
 
 use crate::window::Span;
 
-/// In the order of legends.
+/// Phases with ink and name, in the order of legends.
 const PHASES: [(Phase, Ink, &str); 3] = [
     (Phase::Slip(Sense::Positive), SLIP_POSITIVE, "slip +"),
     (Phase::Stick, STICK, "stick"),

@@ -24,9 +24,9 @@ pub(crate) struct Shown {
     pub(crate) title: &'static str,
     /// Its axis, with the unit.
     pub(crate) axis: &'static str,
-    /// From the column's unit to that of the axis.
+    /// Factor from the column's unit to that of the axis.
     scale: f64,
-    /// Not referred to the joint.
+    /// Quantity of the motor itself, not referred to the joint.
     pub(crate) of_motor: bool,
     /// Added to the model's torque before it is commanded.
     pub(crate) is_stage: bool,
@@ -46,7 +46,7 @@ const fn shown(column: &'static str, title: &'static str, axis: &'static str) ->
     }
 }
 
-/// Of an effect of the device.
+/// Column of an effect of the device.
 const fn stage(spec: &EffectSpec) -> Shown {
     let axis = if same(spec.unit, "V") {
         "Voltage (V)"
@@ -73,7 +73,7 @@ impl Shown {
     }
 }
 
-/// Of the plant.
+/// Columns of the plant.
 const SHOWN: [Shown; 16] = [
     of_motor("motor_current_a", "Motor current", "Current (A)"),
     of_motor("motor_voltage_v", "Motor voltage", "Voltage (V)"),
@@ -150,7 +150,7 @@ pub(crate) struct Plant {
     pub(crate) leg: Follower,
     pub(crate) intended: Follower,
     pub(crate) hand: Course,
-    /// Without its slow part.
+    /// Torque at the hand without its slow part.
     pub(crate) fast: Course,
     /// The time that the slow part is a mean over, s.
     pub(crate) mean_s: f64,
@@ -159,17 +159,17 @@ pub(crate) struct Plant {
     pub(crate) columns: Vec<(Shown, Course)>,
 }
 
-/// What moves beside the shaft.
+/// Motion beside that of the shaft.
 #[derive(Debug)]
 pub(crate) struct Follower {
     pub(crate) angle: Thinned,
     pub(crate) omega: Thinned,
-    /// How far its angle is ahead of the shaft's.
+    /// Lead of its angle over the shaft's.
     pub(crate) ahead: Thinned,
 }
 
 impl Plant {
-    /// Whether something is added to the model's torque.
+    /// Returns whether something is added to the model's torque.
     pub(crate) fn has_stages(&self) -> bool {
         self.columns
             .iter()

@@ -35,7 +35,7 @@ impl Spectrum {
 /// Filter applied to the samples before.
 #[derive(Clone, Copy, Debug)]
 enum Gain {
-    /// Nothing.
+    /// No filter.
     One,
     /// Second differences over this step, s.
     Difference(f64),
@@ -50,7 +50,7 @@ impl Gain {
     }
 }
 
-/// Below this the torque itself is looked at, Hz.
+/// Frequency below which the spectrum is that of the torque itself, Hz.
 const SLOW_HZ: f64 = 2.5;
 
 /// See [`spectrum::Welch`].
@@ -58,7 +58,7 @@ const SLOW_HZ: f64 = 2.5;
 pub(crate) struct Welch {
     of: spectrum::Welch,
     gain: Gain,
-    /// Of the torque itself, where `of` is that of differences.
+    /// Spectrum of the torque itself, where `of` is that of differences.
     slow: Option<spectrum::Welch>,
     /// The last two samples.
     last: [Option<f64>; 2],
@@ -71,7 +71,7 @@ impl Welch {
         Self::with(step_s, expected, Gain::One, None)
     }
 
-    /// By second differences, see the module.
+    /// Estimator by second differences, see the module.
     pub(crate) fn differencing(step_s: f64, expected: u64) -> Option<Self> {
         let expected = expected.saturating_sub(2);
         let slow = spectrum::Welch::new(step_s, expected);

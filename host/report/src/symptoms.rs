@@ -24,7 +24,7 @@ use path::Path;
 use timeline::Timeline;
 use words::Words;
 
-/// Where a symptom's numbers stand in a row.
+/// Positions of a symptom's numbers in a row.
 #[derive(Clone, Copy, Debug)]
 struct Places {
     /// Its own torque; otherwise that of all is read.
@@ -74,14 +74,14 @@ impl Symptom {
         }
     }
 
-    /// Whether its torque is that of all symptoms together.
+    /// Returns whether its torque is that of all symptoms together.
     pub(crate) fn shows_all(&self) -> bool {
         self.places.torque.is_none()
     }
 
-    /// Whether other effects are in that torque, too.
+    /// Returns whether other effects are in that torque, too.
     pub(crate) fn shares_torque(&self) -> bool {
-        !self.found.beats_are_told
+        !self.found.beats_are_counted
     }
 
     fn gap(&mut self) {
@@ -126,7 +126,7 @@ impl Symptom {
         };
         let beat = (self.words.effect() == "clonus" && phase == 1)
             .then_some(Word::Beat)
-            .filter(|_| self.found.beats_are_told && self.last_nm == 0.0 && nm != 0.0);
+            .filter(|_| self.found.beats_are_counted && self.last_nm == 0.0 && nm != 0.0);
         for word in word.into_iter().chain(beat) {
             self.noted(&SymptomEvent {
                 time_s: sample.time,
@@ -140,7 +140,7 @@ impl Symptom {
         }
     }
 
-    /// Without phases the events tell the states.
+    /// Keeps the state that the events gave, where rows have no phase.
     fn keep_state(&mut self, time_s: f64, nm: f64) {
         // A wall that is left again: the torque falls below its cap at once.
         let yields = self.words.effect() == "range-limit" && self.state == Some(2);
@@ -192,7 +192,7 @@ impl Symptoms {
         }
         // The torque of all is its own where there is nothing else, crepitus neither.
         if let [symptom] = &mut list[..] {
-            symptom.found.beats_are_told |= at("phase").is_none();
+            symptom.found.beats_are_counted |= at("phase").is_none();
         }
         let own = list.iter().filter(|symptom| !symptom.shows_all()).count();
         let together = (own > 1 || (own == 1 && total.is_some())).then(|| Together {

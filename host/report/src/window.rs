@@ -118,7 +118,7 @@ impl Window {
         }
     }
 
-    /// Whether crepitus was off in the last row.
+    /// Returns whether crepitus was off in the last row.
     fn is_off(&self) -> bool {
         self.changes
             .last()
@@ -136,7 +136,7 @@ impl Window {
         }
     }
 
-    /// Whether more happened than one chart can show. From then on only the
+    /// Returns whether more happened than one chart can show. From then on only the
     /// torque is recorded.
     pub(crate) fn overflowed(&self) -> bool {
         self.overflowed

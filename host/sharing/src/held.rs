@@ -1,4 +1,4 @@
-//! What a hub has of the place where programs meet: its lock and its socket.
+//! A hub's part of the place where programs meet: its lock and its socket.
 
 use crate::place::Place;
 use crate::socket::{Arrival, Listener};

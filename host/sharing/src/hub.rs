@@ -6,7 +6,7 @@
 //!           └─ send <──── one queue <───────── read <─── program
 //! ```
 //!
-//! It ends with its owner, or when the port fails. Then every program is told, and
+//! It ends with its owner, or when the port fails. Then every program is notified, and
 //! the lock falls to one of them.
 
 use crate::frames::Frames;
@@ -27,7 +27,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// How often a thread that waits for bytes looks whether the hub has ended.
+/// Interval at which a thread that waits for bytes looks whether the hub has ended.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
 /// The first pause of waiting for a program that connects, as this one does when the hub has begun;
@@ -59,7 +59,7 @@ struct State {
     to_port: SyncSender<Chunk>,
     is_over: AtomicBool,
     began: Instant,
-    /// When the thread that receives was last seen at work, ms from then.
+    /// Time from `began` at which the thread that receives was last seen at work, ms.
     at_work_ms: AtomicU64,
 }
 
@@ -98,7 +98,7 @@ impl Hub {
         }
     }
 
-    /// Whether it serves no longer: the port has failed.
+    /// Returns whether it serves no longer: the port has failed.
     pub(crate) fn is_over(&self) -> bool {
         self.state.is_over()
     }
@@ -119,7 +119,7 @@ impl State {
         self.is_over.load(Ordering::Acquire)
     }
 
-    /// Whether this program was stopped, and goes on.
+    /// Returns whether this program was stopped, and goes on.
     fn was_stopped(&self) -> bool {
         let at_work_ms = self.at_work_ms.load(Ordering::Acquire);
         self.now_ms().saturating_sub(at_work_ms) > STOPPED_MS
@@ -420,7 +420,7 @@ mod tests {
         Place::in_folder(folder.path(), "knee").socket
     }
 
-    /// Whether a program that connects is greeted.
+    /// Returns whether a program that connects is greeted.
     fn is_welcome(socket: &Path) -> bool {
         let Ok(mut link) = connect(socket).map(Link::new) else {
             return false;
@@ -437,7 +437,7 @@ mod tests {
         false
     }
 
-    /// As when the system removes the folder of a user who logs out.
+    /// Removal of the socket, as when the system removes the folder of a user who logs out.
     #[test]
     fn a_hub_whose_socket_was_removed_or_replaced_is_found_again_and_ends() {
         let (folder, hub, _) = served(1);
@@ -475,7 +475,7 @@ mod tests {
         assert!(socket.join("inside").is_dir());
     }
 
-    /// What has waited for a program that was stopped is not sent when it goes on: a request to
+    /// Frames that have waited for a program that was stopped are not sent when it goes on: a request to
     /// arm would arm a device of which nobody thinks any more.
     #[test]
     fn what_has_waited_for_a_program_that_was_stopped_is_not_sent() {

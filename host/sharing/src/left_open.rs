@@ -13,7 +13,7 @@ pub(crate) struct LeftOpen {
     /// Session, nonce and number of its last request.
     last: Option<(Session, Nonce, u32)>,
     is_subscribed: bool,
-    /// When it asked to be armed, and renewed the lease last: not known to another hub.
+    /// Times at which it asked to be armed, and renewed the lease last: not known to another hub.
     #[serde(skip)]
     asked: Option<Instant>,
     #[serde(skip)]
@@ -50,12 +50,12 @@ impl LeftOpen {
         self.last.map(|(session, ..)| session)
     }
 
-    /// Whether it renews the lease: the device is armed for it.
+    /// Returns whether it renews the lease: the device is armed for it.
     pub(crate) fn renews(&self) -> bool {
         is_recent(self.renewed)
     }
 
-    /// Whether it has asked to be armed, and not to be disarmed since.
+    /// Returns whether it has asked to be armed, and not to be disarmed since.
     pub(crate) fn is_armed(&self) -> bool {
         self.asked.is_some() || self.renewed.is_some()
     }
@@ -104,7 +104,7 @@ pub(crate) fn requests_in(frames: &[u8]) -> Vec<Request> {
     requests
 }
 
-/// Whether a lease that was renewed then may still be valid.
+/// Returns whether a lease that was renewed then may still be valid.
 fn is_recent(then: Option<Instant>) -> bool {
     let lease = Duration::from_secs(1) * u32::try_from(LEASE_TICKS).unwrap_or(0) / TICKS_PER_S;
     then.is_some_and(|then| then.elapsed() < lease)

@@ -1,6 +1,6 @@
 //! # One device for several programs
 //!
-//! Whoever opens a device first serves it to the others:
+//! The program that opens a device first serves it to the others:
 //!
 //! ```text
 //!  first program                                     another program

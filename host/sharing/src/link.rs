@@ -40,14 +40,14 @@ impl Link {
         }
     }
 
-    /// What the program that serves has left open so far.
+    /// Subscription and lease that the program that serves has left open so far.
     #[cfg(test)]
     pub(crate) fn heir(&self) -> Option<&Note> {
         self.heir.as_ref()
     }
 
-    /// What the program that served has left open, if it was killed: it has closed its end without a
-    /// word. One that hangs has not, and may go on.
+    /// Subscription and lease that the program that served has left open, if it was killed: it has
+    /// closed its end without a word. One that hangs has not, and may go on.
     pub(crate) fn into_heir(mut self) -> Option<Note> {
         // The word may be unread.
         for _ in 0..MOST_UNREAD {
@@ -156,7 +156,7 @@ mod tests {
         drop(stopped);
     }
 
-    /// Only of a program that has closed its end without a word there is something to end.
+    /// There is something to end only of a program that has closed its end without a word.
     #[test]
     fn who_hangs_or_leaves_in_order_has_no_heir() {
         let folder = tempfile::tempdir().unwrap();

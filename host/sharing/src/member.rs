@@ -40,7 +40,7 @@ impl Member {
         }
     }
 
-    /// Whether it is this program.
+    /// Returns whether it is this program.
     pub(crate) fn is_this(&self) -> bool {
         self.program.pid == std::process::id()
     }

@@ -19,7 +19,7 @@ const NAME_CHARACTERS: usize = 60;
 /// A program that is connected to a device.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Program {
-    /// What it calls itself: its command line.
+    /// Name that it gives itself: its command line.
     pub name: String,
     /// Process id.
     pub pid: u32,
@@ -44,30 +44,30 @@ impl Program {
 /// A message between programs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Note {
-    /// To the hub: who connects. Answered by [`Note::Welcome`].
+    /// Greeting to the hub: the program that connects. Answered by [`Note::Welcome`].
     Hello(Program),
-    /// To the hub, before it is greeted: what was asked of the hub before.
+    /// Subscription and lease that the previous hub was asked for: to the hub, before it is greeted.
     LeftOpen(LeftOpen),
     /// The hub serves.
     Welcome,
-    /// To the hub: who is connected? Answered by [`Note::Member`]s and
+    /// Question to the hub: who is connected? Answered by [`Note::Member`]s and
     /// [`Note::End`].
     Who,
     /// A program that is connected.
     Member(Program),
     /// The end of an answer.
     End,
-    /// What the program that serves has left open: to all others, after each of its requests. If it
-    /// is killed, they give it to the next hub, which ends it.
+    /// Subscription and lease that the program that serves has left open: to all others, after each of
+    /// its requests. If it is killed, they give both to the next hub, which ends them.
     Heir {
         /// Its subscription.
         open: LeftOpen,
         /// Its lease.
         is_armed: bool,
     },
-    /// The hub ends: connect anew.
+    /// The hub ends: connect again.
     Leaving,
-    /// Of another version.
+    /// A message of another version.
     Other,
 }
 

@@ -1,4 +1,4 @@
-//! Where the programs that share a device meet: a socket and a lock in the user's
+//! Meeting place of the programs that share a device: a socket and a lock in the user's
 //! folder, named after the device.
 
 use crepitus_client::discovery::{self, DeviceKind};
@@ -7,7 +7,7 @@ use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// In the user's folder.
+/// Name of the folder in the user's folder.
 const FOLDER: &str = "shared";
 
 /// The most bytes that the path of a socket has, without its ending: systems allow 104 to 108.
@@ -16,11 +16,11 @@ const LONGEST: usize = 95;
 /// Socket and lock of a device.
 #[derive(Clone, Debug)]
 pub(crate) struct Place {
-    /// Of the device.
+    /// Name of the device.
     name: String,
     /// The socket on which the hub listens.
     pub(crate) socket: PathBuf,
-    /// Whoever has locked this file is the hub, or is about to be. The system
+    /// Lock file: the program that has locked it is the hub, or is about to be. The system
     /// unlocks it when that program ends, however it ends.
     lock: PathBuf,
 }
@@ -47,7 +47,7 @@ impl Place {
         Ok(Self::in_folder(&folder, name))
     }
 
-    /// Where programs that were started with another environment meet: from a cron job, or as
+    /// Places of programs that were started with another environment: from a cron job, or as
     /// another user that became this one.
     pub(crate) fn others(port: &str) -> Vec<Self> {
         let name = name_of(port);
@@ -81,7 +81,7 @@ impl Place {
         }
     }
 
-    /// Whether this lock is the one that other programs find.
+    /// Returns whether this lock is the one that other programs find.
     #[cfg(unix)]
     pub(crate) fn has(&self, lock: &File) -> bool {
         use std::os::unix::fs::MetadataExt;
@@ -97,7 +97,7 @@ impl Place {
     }
 }
 
-/// Which folder it is about.
+/// Adds to an error the folder that it is about.
 fn of_user_folder(error: &io::Error) -> io::Error {
     let folder = discovery::user_folder();
     io::Error::new(error.kind(), format!("{}: {error}", folder.display()))

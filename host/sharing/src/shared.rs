@@ -15,7 +15,7 @@ use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How long programs try to connect to each other: one of them may just be
+/// Time for which programs try to connect to each other: one of them may just be
 /// opening the port.
 const ATTACH: Duration = Duration::from_secs(1);
 
@@ -30,16 +30,16 @@ const ANSWER: Duration = Duration::from_millis(500);
 #[derive(Debug)]
 pub struct Shared {
     port: String,
-    /// Which it was when it was opened first.
+    /// Pseudo-terminal that the port was when it was opened first.
     terminal: Option<PseudoTerminal>,
     program: Program,
     /// Its subscription and lease, which it tells the next hub.
     sent: Frames,
     open: LeftOpen,
     link: Option<Link>,
-    /// What a program that served and was killed has left open.
+    /// Subscription and lease that a program that served and was killed has left open.
     heir: Option<Note>,
-    /// Where this program serves the others.
+    /// Hub at which this program serves the others.
     hub: Option<Hub>,
     began: Instant,
 }

@@ -41,6 +41,6 @@ fn figures(study: &EffectsStudy, paper: Paper) -> Vec<Figure> {
         .into_iter()
         .chain(bands::figure(study));
     charts
-        .chain(stories.map(|told| story::figure(&told, paper)))
+        .chain(stories.map(|story| story::figure(&story, paper)))
         .collect()
 }

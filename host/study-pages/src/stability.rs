@@ -31,7 +31,7 @@ pub fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText) -> Str
 
 /// The matrix, in brief, and every story as files of their own.
 pub fn pictures(matrix: &Matrix, stories: Option<&Stories>, paper: Paper) -> Vec<Picture> {
-    let figures = stories.map_or_else(Vec::new, |told| story::figures(told, paper));
+    let figures = stories.map_or_else(Vec::new, |story| story::figures(story, paper));
     let mut pictures = vec![picture::picture(matrix)];
     pictures.extend(crepitus_plot::pictures(&figures));
     pictures

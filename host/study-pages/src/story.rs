@@ -40,7 +40,7 @@ pub fn figures(stories: &Stories, paper: Paper) -> Vec<Figure> {
         turn_back::story(&stories.turn_back),
     ]
     .iter()
-    .map(|told| figure(told, paper))
+    .map(|story| figure(story, paper))
     .collect()
 }
 
@@ -51,9 +51,9 @@ pub(crate) struct Story {
     pub(crate) name: &'static str,
     /// Statement, in a line.
     pub(crate) title: &'static str,
-    /// What one sees, with the numbers.
+    /// Description of what one sees, with the numbers.
     pub(crate) caption: String,
-    /// From top to bottom.
+    /// Panels from top to bottom.
     pub(crate) panels: Vec<PanelData>,
 }
 
@@ -74,7 +74,7 @@ pub(crate) struct PanelData {
     pub(crate) bounds: Vec<Mark>,
 }
 
-/// What an axis shows.
+/// Quantity, scale and range of an axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Scale {
     /// Quantity and unit: `Time (s)`. Panels below each other that share it,
@@ -82,7 +82,7 @@ pub(crate) struct Scale {
     pub(crate) label: &'static str,
     /// Whether it is logarithmic.
     pub(crate) logarithmic: bool,
-    /// From where to where; `None` covers what is there. What is outside in y
+    /// Start and end; `None` covers what is there. What is outside in y
     /// stands at the edge, what is outside in x is left out.
     pub(crate) range: Option<(f64, f64)>,
 }
@@ -90,11 +90,11 @@ pub(crate) struct Scale {
 /// One line. Lines of one name look the same in all panels of a story.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Series {
-    /// For the legend.
+    /// Name for the legend.
     pub(crate) name: &'static str,
     /// Whether each point has a sign of its own: measured one by one.
     pub(crate) dotted: bool,
-    /// From left to right.
+    /// Points from left to right.
     pub(crate) points: Vec<(f64, f64)>,
 }
 

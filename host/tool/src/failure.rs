@@ -9,7 +9,7 @@ use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Why a verb failed.
+/// Reason for the failure of a verb.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// Bad usage or bad input: exit code 2.
@@ -75,12 +75,12 @@ impl Failure {
             Self::Negative | Self::NoReader => return ExitCode::from(1),
         };
         let printed = json && {
-            let mut told = json!({ "error": { "message": text, "exit_code": code } });
-            if let (Self::Kept(_, kept), Some(told)) = (self, told.as_object_mut()) {
-                told.extend(kept.clone());
+            let mut report = json!({ "error": { "message": text, "exit_code": code } });
+            if let (Self::Kept(_, kept), Some(report)) = (self, report.as_object_mut()) {
+                report.extend(kept.clone());
             }
             // A reader that has closed stdout wants no more; a full disk must not hide the error.
-            matches!(print_json(&told), Ok(()) | Err(Self::NoReader))
+            matches!(print_json(&report), Ok(()) | Err(Self::NoReader))
         };
         if !printed {
             // Without anybody who reads, the exit code tells.

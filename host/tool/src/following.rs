@@ -25,7 +25,7 @@ const DISARM_TIMEOUT: Duration = Duration::from_millis(100);
 /// Timeout of reconnection.
 const RECONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// Why the loop ended.
+/// Reason for the end of the loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
     /// The duration has elapsed.
@@ -34,7 +34,7 @@ pub(crate) enum End {
     Requested,
 }
 
-/// What a verb does with the device meanwhile.
+/// Work that a verb does with the device in the loop.
 pub(crate) trait Follower {
     /// Handles a telemetry block; requests to `client` are allowed.
     fn block(&mut self, client: &mut Client<Line>, block: &Block) -> Result<(), Failure>;
@@ -193,7 +193,7 @@ fn run(
     }
 }
 
-/// Why an armed device has disarmed by itself. The change of its state may have been
+/// Failure that says why an armed device has disarmed by itself. The change of its state may have been
 /// too quick to be seen as one.
 fn disarmed(client: &mut Client<Line>) -> Failure {
     let status = match client.status() {

@@ -7,8 +7,8 @@ use std::sync::{Arc, OnceLock};
 
 static REQUESTED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
-/// A request was obeyed and forgotten.
-static WAS_OBEYED: AtomicBool = AtomicBool::new(false);
+/// Whether a request was carried out and forgotten.
+static WAS_CARRIED_OUT: AtomicBool = AtomicBool::new(false);
 
 /// Installs the handlers, which set a flag.
 ///
@@ -51,17 +51,17 @@ fn held_back(work: impl FnOnce()) {
     work();
 }
 
-/// Forgets a request that was obeyed; the next one counts.
+/// Forgets a request that was carried out; the next one counts.
 pub(crate) fn forget() {
     if let Some(requested) = REQUESTED.get() {
         let was_requested = requested.swap(false, Ordering::Relaxed);
-        WAS_OBEYED.fetch_or(was_requested, Ordering::Relaxed);
+        WAS_CARRIED_OUT.fetch_or(was_requested, Ordering::Relaxed);
     }
 }
 
-/// Whether a stop was ever requested, also one that was obeyed since.
+/// Returns whether a stop was ever requested, also one that was carried out since.
 pub(crate) fn ever_requested() -> bool {
-    requested() || WAS_OBEYED.load(Ordering::Relaxed)
+    requested() || WAS_CARRIED_OUT.load(Ordering::Relaxed)
 }
 
 /// Requests a stop, as the signal does: for a Ctrl-C that arrived as a key.
@@ -71,7 +71,7 @@ pub(crate) fn request() {
     }
 }
 
-/// Whether a stop was requested.
+/// Returns whether a stop was requested.
 pub(crate) fn requested() -> bool {
     REQUESTED
         .get()
@@ -95,7 +95,7 @@ fn signals() -> Vec<i32> {
     vec![SIGINT, SIGTERM]
 }
 
-/// Whether this program was started with the signal ignored, as by `nohup`.
+/// Returns whether this program was started with the signal ignored, as by `nohup`.
 #[cfg(unix)]
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

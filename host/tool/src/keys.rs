@@ -24,12 +24,12 @@ impl Keys {
         Self(stdin().is_terminal() && enable_raw_mode().is_ok())
     }
 
-    /// Whether stdin is a terminal that delivers keys.
+    /// Returns whether stdin is a terminal that delivers keys.
     pub(crate) fn is_active(&self) -> bool {
         self.0
     }
 
-    /// Whether a key was pressed, Ctrl-C included.
+    /// Returns whether a key was pressed, Ctrl-C included.
     pub(crate) fn pressed(&self) -> bool {
         self.next().is_some()
     }

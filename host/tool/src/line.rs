@@ -120,7 +120,7 @@ pub(crate) fn failure(error: Error) -> Failure {
     }
 }
 
-/// [`failure`]; a device that another program has armed is told with that
+/// [`failure`]; a device that another program has armed is reported with that
 /// program's name.
 pub(crate) fn failure_with(client: &mut Client<Line>, error: Error) -> Failure {
     let Error::Refused(refused) = &error else {
@@ -155,7 +155,7 @@ pub(crate) fn named(program: &Program) -> String {
     format!("`{}`, process {},", program.name, program.pid)
 }
 
-/// What the user typed, by which other programs name this one.
+/// Command line as the user typed it, by which other programs name this one.
 fn command_line() -> String {
     let arguments = std::env::args_os().skip(1);
     let words = arguments.map(|argument| argument.to_string_lossy().into_owned());

@@ -1,4 +1,4 @@
-//! What is written to stdout and stderr, which others read at their own pace.
+//! Output to stdout and stderr, which others read at their own pace.
 //!
 //! A pipe that nobody reads, or a terminal that was stopped by Ctrl-S, takes nothing more. A write would then wait
 //! for it, whatever signal comes; here a requested stop ends the wait.
@@ -50,7 +50,7 @@ fn most_bytes(out: &impl IsTerminal) -> usize {
     }
 }
 
-/// Whether stderr takes more now.
+/// Returns whether stderr takes more now.
 #[cfg(unix)]
 pub(crate) fn stderr_is_ready() -> bool {
     is_ready(&io::stderr(), 0)
@@ -59,7 +59,7 @@ pub(crate) fn stderr_is_ready() -> bool {
 /// Waits until it takes more; false if a stop is requested first.
 #[cfg(unix)]
 fn takes_more(out: &impl std::os::fd::AsRawFd) -> bool {
-    /// Between two looks at the request, ms.
+    /// Time between two looks at the request for a stop, ms.
     const LOOK_EVERY: i32 = 20;
     while !is_ready(out, LOOK_EVERY) {
         if interrupt::ever_requested() {
@@ -69,7 +69,7 @@ fn takes_more(out: &impl std::os::fd::AsRawFd) -> bool {
     true
 }
 
-/// Whether a write would not wait, within this time; also if it would fail.
+/// Returns whether a write would not wait, within this time; also if it would fail.
 #[cfg(unix)]
 fn is_ready(out: &impl std::os::fd::AsRawFd, ms: i32) -> bool {
     use nix::errno::Errno;

@@ -27,7 +27,7 @@ const NAMES: [(&str, Quantity, f64); 7] = [
     ("motor_torque_nm", Quantity::MotorTorque, 1.0),
 ];
 
-/// What was measured, and how to read it.
+/// Measured curves, and how to read them.
 #[derive(Debug, Default, Args)]
 pub(crate) struct Overlay {
     /// Lay measured curves over those of the run: a CSV file, or OpenSim's .mot or .sto.
@@ -44,7 +44,7 @@ pub(crate) struct Overlay {
           allow_hyphen_values = true)]
     scales: Vec<(String, String)>,
 
-    /// What is added to a column, after the factor, in the unit of its name.
+    /// Offset of a column, added after the factor, in the unit of its name.
     #[arg(id = "overlay-offset", long = "overlay-offset", value_name = "OURS=VALUE", value_delimiter = ',', value_parser = key_and_value, requires = "overlay")]
     offsets: Vec<(String, String)>,
 

@@ -74,7 +74,7 @@ fn column(name: &str) -> Result<Column, String> {
 }
 
 impl Pictures {
-    /// Whether they are wanted.
+    /// Returns whether they are wanted.
     pub(crate) const fn wanted(&self) -> bool {
         self.format.is_some()
     }
@@ -99,7 +99,7 @@ impl Pictures {
     }
 }
 
-/// A picture that has to be wider than was asked for is one that cannot be laid out anew.
+/// Warns of a picture that has to be wider than was asked for: one that cannot be laid out again.
 fn warn_of_width(picture: &Picture, column: Column) {
     let mm = picture.print_mm();
     if mm > column.mm() {

@@ -11,7 +11,7 @@ const SHOW_AFTER: Duration = Duration::from_secs(1);
 pub(crate) struct Progress {
     begun: Instant,
     total_s: f64,
-    /// What the percentage is of.
+    /// Name of the whole of which the percentage is shown.
     whole: &'static str,
     bar: Option<ProgressBar>,
 }

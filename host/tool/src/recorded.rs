@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 /// A recording in progress.
 pub(crate) struct Recorded {
     recorder: Recorder,
-    /// Of the recording: what has its file's name in the end may be another one.
+    /// Id of the recording: what has its file's name in the end may be another one.
     id: String,
     announced: Option<Revision>,
     status: StatusLine,
@@ -178,7 +178,7 @@ fn in_final_format(file: &Path, id: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What was recorded is no longer in its file.
+/// Failure: what was recorded is no longer in its file.
 fn lost(why: &str) -> Failure {
     Failure::Work(format!(
         "{why}: the recording was moved, removed or changed while it ran; if it was moved, it is whole, in the \

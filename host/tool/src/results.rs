@@ -133,7 +133,7 @@ pub(crate) fn svg_files<'f>(figures: impl IntoIterator<Item = &'f Figure>) -> Fi
         .collect()
 }
 
-/// What makes a run that run: with the same, the same numbers come out.
+/// Identity of a run: runs with the same identity give the same numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Identity<'a> {
     as_run: &'a str,
@@ -175,7 +175,7 @@ impl<'a> Identity<'a> {
             })
     }
 
-    /// Whether a folder holds another run.
+    /// Returns whether a folder holds another run.
     pub(crate) fn is_another_in(self, folder: &Path) -> bool {
         if !folder.join("summary.json").exists() {
             return false;

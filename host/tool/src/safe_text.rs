@@ -77,7 +77,7 @@ fn brief(text: &str, arguments: impl Iterator<Item = String>) -> String {
     visible(&brief).into_owned()
 }
 
-/// What was typed, or is quoted, is no line of its own.
+/// Escapes line breaks: what was typed, or is quoted, is no line of its own.
 fn one_line(text: &str) -> String {
     text.replace('\n', "\\n")
 }

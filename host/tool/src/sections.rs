@@ -1,4 +1,4 @@
-//! What reports of a run and of a recording have in common: tables, and the
+//! Common parts of the reports of a run and of a recording: tables, and the
 //! torque levels that are marked.
 
 use crepitus_model::{Restart, Settings};
@@ -45,7 +45,7 @@ pub(crate) fn section(
     }
 }
 
-/// How many of each: 1 break, 2 sticks.
+/// Numbers with their names: 1 break, 2 sticks.
 pub(crate) fn counts(of: &[(u64, &str)]) -> String {
     let counted = of.iter().map(|(count, name)| match count {
         1 => format!("1 {name}"),

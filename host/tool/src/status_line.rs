@@ -21,7 +21,7 @@ impl StatusLine {
         Self { bar, last: None }
     }
 
-    /// Of a program whose lines go to stdout: on a terminal they show that samples arrive.
+    /// Status line of a program whose lines go to stdout: on a terminal they show that samples arrive.
     pub(crate) fn beside_lines() -> Self {
         let line = Self::new();
         if io::stdout().is_terminal() {

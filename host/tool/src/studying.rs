@@ -1,4 +1,4 @@
-//! What the verbs that carry out a study share: the progress that they show,
+//! Common parts of the verbs that carry out a study: the progress that they show,
 //! how they are interrupted, and where their times were measured.
 
 use crate::failure::Failure;

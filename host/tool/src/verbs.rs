@@ -1,4 +1,4 @@
-//! What `crepitus` can do. A verb is one file: its arguments with their help,
+//! Verbs of `crepitus`. A verb is one file: its arguments with their help,
 //! and what it does. A new one is entered twice here: as a module and in the
 //! list.
 
@@ -37,7 +37,7 @@ use clap::Subcommand;
 
 macro_rules! verbs {
     ($($verb:ident: $module:ident),* $(,)?) => {
-        /// What the command line asks for.
+        /// Verb of the command line, with its arguments.
         #[derive(Debug, Subcommand)]
         pub(crate) enum Verb {
             $($verb($module::Arguments)),*

@@ -83,7 +83,7 @@ impl Wav {
                     .to_owned(),
             }));
         };
-        // Before the work, so that a place where no file can be is told early.
+        // Before the work, so that a place where no file can be is reported early.
         if file.is_dir() {
             return Err(Failure::Input(format!(
                 "--wav {}: this is a folder: name a file",
@@ -106,7 +106,7 @@ impl Wav {
     }
 }
 
-/// Whether there is something in the file, and no sound.
+/// Returns whether there is something in the file, and no sound.
 fn is_of_another_kind(file: &Path) -> bool {
     let mut head = Vec::new();
     let read = File::open(file).and_then(|file| file.take(4).read_to_end(&mut head));

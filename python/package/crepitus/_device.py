@@ -206,7 +206,7 @@ class Device:
         self._device.disarm()
 
     def stop(self) -> None:
-        """Turns torque off at once, whoever has armed the device, also from another thread."""
+        """Turns torque off at once, whichever program has armed the device, also from another thread."""
         self._device.stop()
 
     def clear_fault(self) -> None:

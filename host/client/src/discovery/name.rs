@@ -60,7 +60,7 @@ impl ServedName {
         ))
     }
 
-    /// Where the link to the pty belongs.
+    /// Path at which the link to the pty belongs.
     pub fn link(&self) -> &Path {
         &self.link
     }
@@ -84,24 +84,24 @@ impl ServedName {
     .pty.display()
 )]
 pub struct Elsewhere {
-    /// Where it leads.
+    /// Target that it has.
     pub target: PathBuf,
-    /// Where it should.
+    /// Target that it should have.
     pub pty: PathBuf,
 }
 
-/// What is behind the link of a simulated device.
+/// Target of the link of a simulated device.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Standing {
     /// The device.
     Served,
-    /// Nothing of this project: its program has ended, or does not serve yet.
+    /// Not a device of this project: its program has ended, or does not serve yet.
     Ended,
     /// Something else, while its program serves the device.
     Elsewhere(Elsewhere),
 }
 
-/// What is behind this link.
+/// Target of this link.
 pub(super) fn standing(link: &Path) -> Standing {
     match (pty_of(link), fs::read_link(link)) {
         (Some(pty), Ok(target)) if target != pty => Standing::Elsewhere(Elsewhere { target, pty }),
@@ -111,7 +111,7 @@ pub(super) fn standing(link: &Path) -> Standing {
     }
 }
 
-/// Where this link should lead, if a program serves a simulated device there.
+/// Target that this link should have, if a program serves a simulated device there.
 fn pty_of(link: &Path) -> Option<PathBuf> {
     let mut lock = File::open(lock_of(link)).ok()?;
     if !matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)) {

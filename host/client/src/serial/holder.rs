@@ -26,7 +26,7 @@ fn program(process: &Path) -> String {
         .map_or_else(|_| "?".to_owned(), |name| name.trim_end().to_owned())
 }
 
-/// Whether this is a character device.
+/// Returns whether this is a character device.
 pub(super) fn is_terminal(port: &str) -> bool {
     #[cfg(unix)]
     {

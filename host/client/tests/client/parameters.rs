@@ -134,8 +134,8 @@ mod overtaking {
     use crepitus_client::{Transport, TransportError};
     use std::time::Duration;
 
-    /// Before a frame that is as long as a commit goes out, the other client
-    /// sets what is next in its list.
+    /// Transport that, before a frame as long as a commit goes out, lets the other client
+    /// set what is next in its list.
     pub(super) struct Overtaken {
         pub(super) inner: Port,
         pub(super) other: Client<Port>,

@@ -43,7 +43,7 @@ fn a_lost_request_is_retried() {
 }
 
 /// They begin at 65,532. Beyond 2^32 the device would ignore them as old ones, which no session
-/// reaches: at 1,000 requests a second it takes 50 days, and each start begins anew.
+/// reaches: at 1,000 requests a second it takes 50 days, and each start begins there again.
 #[test]
 fn sequence_numbers_pass_65_535() {
     let (_, mut client) = connected();

@@ -144,7 +144,7 @@ fn a_computer_that_is_slow_at_receiving_hands_out_all_that_it_receives() {
     check_books(&client);
 }
 
-/// What it asks at the end is answered more than a second later, behind all the blocks.
+/// The request at the end is answered more than a second later, behind all the blocks.
 #[test]
 fn a_link_that_lags_by_more_than_a_second_is_not_one_that_has_stopped() {
     let (shared, mut client) = connected();
@@ -160,7 +160,7 @@ fn a_link_that_lags_by_more_than_a_second_is_not_one_that_has_stopped() {
     assert!(client.unheard().is_some(), "nothing is heard any more");
 }
 
-/// What it hears is old, and what the device dropped since then is in no block yet.
+/// The blocks received are old, and what the device dropped since then is in no block yet.
 #[test]
 fn a_link_that_lags_is_not_one_that_has_stopped() {
     let (shared, mut client) = connected();

@@ -9,7 +9,7 @@ pub struct Noise {
     pub flip: u64,
     /// Twice.
     pub double: u64,
-    /// So many more bytes are lost.
+    /// Number of further bytes to lose.
     pub swallow: usize,
     state: u64,
 }

@@ -10,7 +10,7 @@ pub struct Port {
     device: Shared,
     host: usize,
     is_open: bool,
-    /// Of a slow computer: how much it receives in a millisecond, which goes by meanwhile.
+    /// Number of bytes that a slow computer receives in a millisecond, which goes by meanwhile.
     pub bytes_per_ms: Option<usize>,
 }
 

@@ -68,7 +68,7 @@ const HELD_MOVED: f64 = 0.02;
 /// of it; a sine is within 0.4 % of its amplitude for 11 %.
 const CLIPPED: f64 = 0.2;
 
-/// Least level, in steps of the record, at which that can be told: of a sine of fewer steps the
+/// Least level, in steps of the record, at which that can be detected: of a sine of fewer steps the
 /// highest one alone is a fifth.
 const FEWEST_STEPS: f64 = 45.0;
 

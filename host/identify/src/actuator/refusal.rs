@@ -56,7 +56,7 @@ pub enum Refusal {
     CoilOpen {
         /// Root mean square of the current, A.
         amperes: f64,
-        /// Of the voltage, V.
+        /// Root mean square of the voltage, V.
         volts: f64,
         /// The limit, Ω.
         limit_ohm: f64,
@@ -69,7 +69,7 @@ pub enum Refusal {
         /// R, Ω.
         resistance_ohm: f64,
     },
-    /// Nothing moves.
+    /// No resonance in the band.
     #[error(
         "no resonance between {from_hz:.0} and {to_hz:.0} Hz: the current shows resistance and inductance only; \
          the mass is stuck, its resonance lies outside the band, the amplitude is too low to see it, or mains hum hides it"
@@ -138,7 +138,7 @@ pub enum Refusal {
          {share:.1} %; eddy currents or the amplifier's bandwidth do this: take a lower --to-hz"
     )]
     NotAnInductance {
-        /// Where the difference is greatest, Hz.
+        /// Frequency of the greatest difference, Hz.
         hz: f64,
         /// The difference, %.
         share: f64,
@@ -163,7 +163,7 @@ pub enum Refusal {
     Nonlinear {
         /// Unexplained share, %.
         share: f64,
-        /// What a linear actuator would do, for people.
+        /// Swing of a linear actuator, for people.
         swing: String,
     },
     /// A number that cannot be below zero is.
@@ -172,7 +172,7 @@ pub enum Refusal {
          with the right scale"
     )]
     Negative {
-        /// What, with its unit.
+        /// Name of the number, with its unit.
         what: &'static str,
         /// Its value.
         value: f64,
@@ -183,7 +183,7 @@ pub enum Refusal {
          amplitude; the noise of the current is {noise_ma:.1} mA"
     )]
     Uncertain {
-        /// What.
+        /// Name of the parameter.
         what: &'static str,
         /// Half width of its interval, %.
         share: f64,
@@ -242,9 +242,9 @@ pub enum Refusal {
          weigh again, and count a third of the flexure and what of the cable moves"
     )]
     WrongMass {
-        /// From the two chirps, g.
+        /// Mass found from the two chirps, g.
         found_g: f64,
-        /// As given, g.
+        /// Mass as given, g.
         weighed_g: f64,
     },
     /// Outside what the device takes.

@@ -48,7 +48,7 @@ pub enum Current {
 }
 
 impl Hold {
-    /// What of the sampled voltage drives the coil at ω: with x = ω·tick/2, sin(x)/x
+    /// Factor by which the sampled voltage drives the coil at ω: with x = ω·tick/2, sin(x)/x
     /// is that of the hold; a mean over the time of a sample, where one over
     /// ticks is expected, is another such factor.
     pub(crate) fn factor(&self, omega: f64) -> f64 {
@@ -93,7 +93,7 @@ pub enum SeriesError {
         line: u64,
         /// The time, s.
         time_s: f64,
-        /// What it would be, s.
+        /// Expected time, s.
         expected_s: f64,
     },
     /// Voltage and current are of different length, or not finite.

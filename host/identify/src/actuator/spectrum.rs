@@ -56,11 +56,11 @@ impl Spectrum {
             .map(|(_, line)| line.norm_sqr())
             .collect();
         noise.sort_by(f64::total_cmp);
-        let is_told = noise.len() >= FEWEST_LINES;
+        let is_known = noise.len() >= FEWEST_LINES;
         Self {
             lines,
             // Squares of noise have an exponential distribution: the median is ln 2 of the mean.
-            noise_square: is_told.then(|| noise[noise.len() / 2] / std::f64::consts::LN_2),
+            noise_square: is_known.then(|| noise[noise.len() / 2] / std::f64::consts::LN_2),
             samples: series.volts().len(),
         }
     }

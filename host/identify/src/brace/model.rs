@@ -69,7 +69,7 @@ pub(crate) struct Begin {
 /// The brace with the torque of one step.
 struct Step<'n> {
     n: &'n Numbers,
-    /// Where the weight hangs at rest, rad.
+    /// Angle at which the weight hangs at rest, rad.
     hang_rad: f64,
     /// Torque of the motor, N·m.
     torque: f64,

@@ -18,7 +18,7 @@ pub enum Refusal {
          and {limit_ms:.0} ms): record again; `crepitus doctor` finds a bad cable or encoder"
     )]
     Missing {
-        /// Of all samples, %.
+        /// Missing or rejected share of all samples, %.
         share: f64,
         /// The longest gap, ms.
         longest_ms: f64,
@@ -43,7 +43,7 @@ pub enum Refusal {
     Jump {
         /// When, s from the recording's start.
         time_s: f64,
-        /// By how much, °.
+        /// Size of the jump, °.
         degrees: f64,
     },
     /// The encoder stops counting in mid-motion.
@@ -57,13 +57,13 @@ pub enum Refusal {
         /// The speed before, °/s.
         speed_deg_s: f64,
     },
-    /// Nothing turns.
+    /// No motion.
     #[error(
         "nothing turns: the angle stays within {degrees:.2}° (expected {expected:.0}° or more); lift the weight by 50° \
          or more and let go"
     )]
     NoMotion {
-        /// What it moves, °.
+        /// Range of the angle, °.
         degrees: f64,
         /// Expected at least, °.
         expected: f64,
@@ -91,10 +91,10 @@ pub enum Refusal {
         /// Amplitude that a swing needs, °.
         amplitude: f64,
     },
-    /// What is given of the weight is impossible.
+    /// Impossible value given for the weight.
     #[error("{what} = {value}: expected a number above zero")]
     Given {
-        /// What.
+        /// Name of the value.
         what: &'static str,
         /// Its value.
         value: f64,
@@ -112,7 +112,7 @@ pub enum Refusal {
         swing_deg: f64,
         /// The limit, °.
         limit_deg: f64,
-        /// Where it is greatest, s from the recording's start.
+        /// Time at which that is greatest, s from the recording's start.
         time_s: f64,
     },
     /// The swing contradicts what was given.
@@ -121,17 +121,17 @@ pub enum Refusal {
          weigh again, and measure from the axis to the centre of mass{also}"
     )]
     Contradiction {
-        /// What was given.
+        /// Name of what was given.
         what: &'static str,
         /// Its unit.
         unit: &'static str,
-        /// What the swing says.
+        /// Value that the swing gives.
         found: f64,
-        /// What was given.
+        /// Value that was given.
         given: f64,
         /// Its 95 % interval.
         error: f64,
-        /// What else it may be.
+        /// Another possible cause, for people.
         also: &'static str,
     },
     /// A number at the end of what can be.

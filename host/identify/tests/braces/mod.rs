@@ -10,7 +10,7 @@ use crepitus_protocol::management::Identity;
 use crepitus_protocol::{DeviceSettings, TICK_S};
 use crepitus_recording::{Begin, Damage, Metadata, Recorder};
 
-/// A brace that nobody has told the estimator about.
+/// A brace that is unknown to the estimator.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Truth {
     pub(crate) friction_nm: f64,
@@ -21,11 +21,11 @@ pub(crate) struct Truth {
     pub(crate) gap_deg: f64,
     pub(crate) stiffness_nm: f64,
     pub(crate) damping_nms: f64,
-    /// Of the motor over what the device believes.
+    /// Torque of the motor over what the device believes.
     pub(crate) torque_scale: f64,
     pub(crate) mass_kg: f64,
     pub(crate) lever_m: f64,
-    /// From where the weight is let go of, from where it hangs.
+    /// Angle at which the weight is let go of, from where it hangs.
     pub(crate) release_deg: f64,
     /// Errors of what a person measures, in standard deviations.
     pub(crate) weighed_wrong: f64,
@@ -61,7 +61,7 @@ impl Truth {
         self.mass_kg * (GYRATION * self.lever_m).powi(2)
     }
 
-    /// What a person says of the weight.
+    /// Weight as a person states it.
     pub(crate) fn given(&self) -> Weight {
         let off = |deviation: f64, by: f64| 1.0 + deviation * by;
         Weight::new(

@@ -24,7 +24,7 @@ pub(crate) struct Compared {
 }
 
 impl Compared {
-    /// Whether the interval holds the truth.
+    /// Returns whether the interval holds the truth.
     pub(crate) fn holds(&self) -> bool {
         self.estimate.holds(self.truth)
     }

@@ -38,7 +38,7 @@ const TICK_S: f64 = 5e-5;
 const RAD_PER_COUNT: f64 = 35.67e-6;
 
 impl Pendulum {
-    /// As a device would record it: counts, and current in whole milliamperes with noise.
+    /// Returns the swing as a device would record it: counts, and current in whole milliamperes with noise.
     pub(crate) fn recorded(&self, random: &mut fastrand::Rng) -> Recording {
         // Stiff teeth: 20 kN·m/rad at the joint, so damped that they hardly bounce.
         const TEETH_NM: f64 = 2e4;

@@ -45,11 +45,11 @@ pub(crate) struct Simulated {
     pub(crate) force_constant: f64,
     pub(crate) mass_kg: f64,
     pub(crate) resonance_hz: f64,
-    /// Of the flexure alone.
+    /// Damping ratio of the flexure alone.
     pub(crate) damping_ratio: f64,
-    /// On the moving mass beside its own, kg; the flexure stays as it is.
+    /// Mass added to the moving mass, kg; the flexure stays as it is.
     pub(crate) added_kg: f64,
-    /// From the middle to a stop, m, and how much its weight moves it, m.
+    /// Distance from the middle to a stop, m, and how far its weight moves the mass, m.
     pub(crate) stroke_m: f64,
     pub(crate) sag_m: f64,
     /// Coulomb friction, N.
@@ -60,14 +60,14 @@ pub(crate) struct Simulated {
     pub(crate) ring: Option<Ring>,
     /// Eddy currents: this resistance, Ω, in parallel with 0.1 mH, in series with the coil.
     pub(crate) eddy_ohm: f64,
-    /// Of a sample, A.
+    /// Standard deviation of the noise of a sample, A.
     pub(crate) noise_a: f64,
     pub(crate) clips_at_a: f64,
     pub(crate) is_open: bool,
     pub(crate) sign: f64,
 }
 
-/// As the data sheet has it, and ideal.
+/// Actuator as the data sheet has it, and ideal.
 pub(crate) const NOMINAL: Simulated = Simulated {
     resistance_ohm: 1.8,
     inductance_h: 2e-4,
@@ -112,7 +112,7 @@ impl Simulated {
         2.0 * std::f64::consts::PI * self.resonance_hz
     }
 
-    /// With the coil connected.
+    /// Damping ratio with the coil connected.
     pub(crate) fn whole_damping_ratio(&self) -> f64 {
         let of_coil = self.force_constant.powi(2) / self.resistance_ohm;
         self.damping_ratio + of_coil / (2.0 * self.mass_kg * self.omega())

@@ -71,7 +71,7 @@ pub enum LessonError {
         /// Trial, from 1.
         trial: usize,
     },
-    /// Nothing to answer where the knee is shown.
+    /// Answer where the knee is shown: there is nothing to answer.
     #[error("this lesson is open, its knees are shown: answers belong to a blind lesson")]
     Open,
     /// The knee is revealed.

@@ -36,7 +36,7 @@ pub(crate) struct Opened {
     /// Number of the first bin.
     first: u64,
     bins: Vec<Bin>,
-    /// What was read in detail last.
+    /// Part that was read in detail last.
     detail: Option<Detail>,
     breaks: u64,
 }
@@ -85,7 +85,7 @@ impl Opened {
         seconds((self.first + count) * u64::from(ROWS_PER_BIN))
     }
 
-    /// What there is to say of it.
+    /// Facts about the recording.
     pub(crate) fn facts(&self) -> Value {
         let metadata = self.recording.metadata();
         let totals = &self.recording.books().totals;
@@ -237,7 +237,7 @@ fn tick(time_s: f64) -> u64 {
     (time_s * f64::from(TICKS_PER_S)).round() as u64
 }
 
-/// At most so many bins of a time, of bins of so many rows; `first` is the number of the
+/// Joins the bins of a time to at most `points`. A bin has `rows` rows; `first` is the number of the
 /// first one.
 fn joined(bins: &[Bin], first: u64, rows: u32, from_s: f64, to_s: f64, points: u16) -> Trace {
     let rows = u64::from(rows);

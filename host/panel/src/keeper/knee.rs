@@ -168,7 +168,7 @@ impl<T: Transport> Keeper<'_, T> {
         Ok(())
     }
 
-    /// Whether pages must not see which knee it is.
+    /// Returns whether pages must not see which knee it is.
     pub(super) fn is_hidden(&self) -> bool {
         let held = self.lesson.as_ref();
         held.is_some_and(|held| held.is_hidden(self.now_s))

@@ -32,7 +32,7 @@ pub(super) struct Held {
 const SETTLED_S: f64 = 1.0;
 
 impl Held {
-    /// Whether pages must not see which knee it is.
+    /// Returns whether pages must not see which knee it is.
     pub(super) fn is_hidden(&self, now_s: f64) -> bool {
         let lesson = &self.session.lesson;
         if lesson.began() {
@@ -44,7 +44,7 @@ impl Held {
         last > 0 && !lesson.is_revealed(last) && !is_left
     }
 
-    /// Whether they see the torque all the same.
+    /// Returns whether they see the torque all the same.
     pub(super) fn shows_curves(&self) -> bool {
         self.session.lesson.plan().curves
     }
@@ -153,7 +153,7 @@ impl<T: Transport> Keeper<'_, T> {
         Ok(())
     }
 
-    /// On the time line, without a word of the knee.
+    /// Notes a trial on the time line, without a word of the knee.
     fn note_trial(&mut self, trial: usize) {
         let text = format!("Trial {trial}");
         self.push_note(&text, "lesson");
@@ -216,7 +216,7 @@ impl<T: Transport> Keeper<'_, T> {
         Ok(Value::Null)
     }
 
-    /// Between trials the knee is healthy: the last one could be felt, and read.
+    /// Makes the knee healthy between trials: the last one could be felt, and read.
     fn leave_knee(&mut self) {
         self.pace = None;
         self.publish_target();
@@ -318,7 +318,7 @@ fn text_of(path: &Path) -> String {
     path.display().to_string()
 }
 
-/// What a student has to tell of a preset.
+/// Knee of a preset, which a student has to identify.
 fn knee_of(preset: &Preset) -> Knee {
     Knee::from(preset)
 }

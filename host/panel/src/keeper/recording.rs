@@ -124,7 +124,7 @@ impl<T: Transport> Keeper<'_, T> {
         }
     }
 
-    /// After a lost connection.
+    /// Resumes the recording after a lost connection.
     pub(super) fn resume_recording(&mut self, begin: crepitus_client::Begin) {
         let Some(recorded) = &mut self.recording else {
             return;

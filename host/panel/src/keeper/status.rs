@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 /// Interval over which the speed of the device's time is measured.
 const SPEED_OVER: Duration = Duration::from_secs(2);
 
-/// How fast the device's time passes: an emulated device is slower than real time.
+/// Speed at which the device's time passes: an emulated device is slower than real time.
 pub(super) struct Speed {
     began: Instant,
     device: Duration,

@@ -17,7 +17,7 @@ use std::time::Duration;
 /// A device that sends a block in the time in which this computer takes one.
 struct Flood {
     device: Simulated,
-    /// From now on, and how often bytes were asked for since.
+    /// Number of times that bytes were asked for since the flood began; none before it.
     received: Option<u32>,
     /// Decoder of what is sent to it, and the requests to disarm in it.
     ear: Decoder,

@@ -16,7 +16,7 @@ pub fn assert_balanced(page: &str) {
     assert!(open.is_empty(), "{open:?}");
 }
 
-/// How often a page holds this.
+/// Number of times that a page holds this part.
 pub fn count(page: &str, part: &str) -> usize {
     page.matches(part).count()
 }
@@ -116,7 +116,7 @@ pub fn assert_labels_inside(svg: &str) -> usize {
     texts
 }
 
-/// On a narrow screen nothing is wider than the page: every chart, and every
+/// Asserts that on a narrow screen nothing is wider than the page: every chart, and every
 /// table that cannot wrap, scrolls in a box of its own and does not shrink
 /// beyond what can be read.
 pub fn assert_fits_a_phone(page: &str) {

@@ -30,7 +30,7 @@ pub(super) struct ObjectTracker {
     parameters: Option<Parameters>,
     object: Option<Object>,
     previous: Option<(i8, f64)>,
-    /// Of the row before the one that was followed last.
+    /// Sense of the phase and torque, N·m, of the row before the one that was followed last.
     before: Option<(i8, f64)>,
 }
 

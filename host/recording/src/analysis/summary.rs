@@ -14,13 +14,13 @@ use std::collections::BTreeMap;
 /// Totals of a recording: its `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct RecordingSummary {
-    /// Of the recording alone.
+    /// Identifier of this recording alone.
     pub id: String,
-    /// What was recorded, in words.
+    /// Subject of the recording, in words.
     pub title: String,
     /// Version of the program that has made this summary.
     pub crepitus_version: &'static str,
-    /// When the recording was begun, seconds since 1970.
+    /// Start of the recording, seconds since 1970.
     pub begun_unix_s: u64,
     /// The comms controller.
     pub comms: Controller,
@@ -60,7 +60,7 @@ pub struct RecordingSummary {
     /// Every parameter set in use, in order: all parameters, then those that
     /// have changed.
     pub parameters: History,
-    /// What to know before relying on the numbers.
+    /// Warnings to read before relying on the numbers.
     pub warnings: Vec<String>,
 }
 

@@ -44,7 +44,7 @@ impl Disk for File {
 /// Bytes that may wait for the disk: three minutes of samples.
 const MOST_WAITING: u64 = 64 << 20;
 
-/// From here on a simulated device, which is faster than its time, has to wait.
+/// Number of waiting bytes beyond which a simulated device, which is faster than its time, has to wait.
 const MANY_WAITING: u64 = 16 << 20;
 const HOLD_UP: Duration = Duration::from_millis(20);
 
@@ -120,7 +120,7 @@ impl Disk for Background {
             Some(Ok(Err(error))) => self.cause = Some((error.kind(), error.to_string())),
             _ => {}
         }
-        // Whoever asks again gets the same.
+        // A caller that asks again gets the same.
         Err(match &self.cause {
             Some((kind, text)) => io::Error::new(*kind, text.clone()),
             None => io::Error::other("writing has ended before"),
@@ -170,14 +170,14 @@ mod tests {
 
     #[test]
     fn behind_bytes_that_were_left_out_nothing_is_written() {
-        let (go_on, may) = channel();
+        let (proceed, may) = channel();
         let mut disk = Background::new(Stalls(may));
         let piece = vec![0; 8 << 20];
         let taken = (0..20).take_while(|_| disk.append(&piece).is_ok()).count();
         assert!((8..=9).contains(&taken), "{taken}");
         // The disk recovers.
         for _ in 0..taken {
-            go_on.send(()).unwrap();
+            proceed.send(()).unwrap();
         }
         while disk.waiting.load(Ordering::Relaxed) > 2 * piece.len() as u64 {
             thread::yield_now();

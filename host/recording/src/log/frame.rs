@@ -22,7 +22,7 @@ pub(crate) enum Entry {
     Subscribed(Begin),
     /// Parameters, from the next block on.
     Parameters {
-        /// From 0.
+        /// Number of the parameter entry, from 0.
         number: u64,
         revision: u32,
         /// `values` holds all parameters, not only those that have changed.
@@ -39,18 +39,18 @@ pub(crate) enum Entry {
 pub(crate) struct Checkpoint {
     /// The recording's.
     pub(crate) id: String,
-    /// From 0.
+    /// Number of the checkpoint, from 0.
     pub(crate) number: u64,
-    /// Of the bytes since the last checkpoint, hexadecimal.
+    /// SHA-256 of the bytes since the last checkpoint, hexadecimal.
     pub(crate) sha256: String,
-    /// So far.
+    /// Totals so far.
     pub(crate) totals: Totals,
     /// The recording ends here.
     pub(crate) is_end: bool,
 }
 
 impl Entry {
-    /// As a frame, with its delimiter.
+    /// Returns the entry as a frame, with its delimiter.
     pub(crate) fn frame(&self) -> io::Result<Vec<u8>> {
         let mut body = ENTRY.to_vec();
         serde_json::to_writer(&mut body, self)?;
@@ -122,7 +122,7 @@ pub(crate) struct Owner {
 }
 
 impl Owner {
-    /// True if the next content is this recording's, as far as that can be told.
+    /// True if the next content is this recording's, as far as that can be determined.
     pub(crate) fn owns(&mut self, content: &Content) -> bool {
         if let Content::Entry(entry) = content {
             match &**entry {

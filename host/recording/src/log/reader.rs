@@ -21,7 +21,7 @@ pub(crate) struct LogReader<R> {
     input: R,
     offset: u64,
     chunk: Vec<u8>,
-    /// Of the bytes since the last checkpoint.
+    /// SHA-256 of the bytes since the last checkpoint.
     sum: Sha256,
     owner: Owner,
     metadata: Option<Metadata>,
@@ -33,7 +33,7 @@ pub(crate) struct LogReader<R> {
     entries: u64,
     /// The set that changes refer to is missing.
     is_history_broken: bool,
-    /// What angles follow from meanwhile.
+    /// Assumptions from which angles follow meanwhile.
     assumed: Findings,
     checkpoints: u64,
     /// Tick of the last checkpoint.
@@ -57,7 +57,7 @@ pub(crate) struct LogReader<R> {
 enum Frame {
     Whole(Content),
     Damaged,
-    /// Nothing: the file ends.
+    /// No frame: the file ends.
     End,
 }
 
@@ -276,7 +276,7 @@ impl<R: BufRead> LogReader<R> {
         }
     }
 
-    /// What stands there is there already, or belongs before what was read.
+    /// Counts content that is there already, or belongs before what was read; reports the first.
     fn repeat(&mut self, tick: u64) {
         self.repeated += 1;
         if self.repeated == 1 {

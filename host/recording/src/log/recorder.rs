@@ -29,7 +29,7 @@ pub enum RecordError {
         path: PathBuf,
         /// The action that failed.
         doing: &'static str,
-        /// Why not.
+        /// Cause of the failure.
         source: io::Error,
     },
 }
@@ -39,7 +39,7 @@ pub enum RecordError {
 pub struct Recorder<D = Background> {
     path: PathBuf,
     disk: D,
-    /// To be appended.
+    /// Bytes to be appended.
     pending: Vec<u8>,
     /// Bytes since the last checkpoint.
     sum: Sha256,
@@ -48,7 +48,7 @@ pub struct Recorder<D = Background> {
     /// Blocks since the last checkpoint.
     blocks: u64,
     ledger: Ledger,
-    /// Of the last block.
+    /// Revision of the last block.
     revision: Option<Revision>,
     /// The last known values that were written.
     values: Option<Values>,

@@ -206,7 +206,7 @@ pub(super) fn read<R: ChunkReader + 'static>(
     Ok(rows)
 }
 
-/// From the words: few of them differ.
+/// Sets the flags from the words: few of them differ.
 fn set_flags(rows: &mut [Row], columns: &[Vec<ByteArray>; 4]) -> io::Result<()> {
     let mut last: Option<([&ByteArray; 4], _)> = None;
     for (at, row) in rows.iter_mut().enumerate() {

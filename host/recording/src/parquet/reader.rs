@@ -21,7 +21,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(crate) struct Reader {
     file: File,
-    /// Of the groups that are in order.
+    /// Seals of the groups that are in order.
     seals: Vec<Seal>,
 }
 

@@ -28,17 +28,17 @@ const FIXED: usize = 28;
 /// A seal.
 #[derive(Clone, Debug)]
 pub(super) struct Seal {
-    /// Where it stands, which is where its group ends.
+    /// Byte at which it stands, which is where its group ends.
     pub(super) at: u64,
     pub(super) first_byte: u64,
     pub(super) bytes: u64,
     pub(super) crc: u32,
     pub(super) first_row: u64,
-    /// Of the group.
+    /// Number of rows of the group.
     pub(super) rows: u64,
     /// The recording's; none in the seal before the first group.
     pub(super) id: Option<String>,
-    /// With this group alone, encoded: decoded it takes ten times the memory.
+    /// Footer with this group alone, encoded: decoded it takes ten times the memory.
     footer: Vec<u8>,
 }
 

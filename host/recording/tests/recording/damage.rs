@@ -60,7 +60,7 @@ impl Bench {
         said
     }
 
-    /// Behind the check, its books and parameters are those of the whole file.
+    /// Does [`Self::check_in_order`], then checks that books and parameters are those of the whole file.
     fn check_mended(&self, bytes: &[u8]) -> String {
         let said = self.check_in_order(bytes, self.all.len());
         let whole = open(&self.folder.path().join("whole")).unwrap();
@@ -246,7 +246,7 @@ fn the_encoder_that_is_assumed_where_parameters_are_lost_is_said() {
     }
 }
 
-/// What every recording has is known without its header.
+/// Metadata common to all recordings, known without the header.
 #[test]
 fn columns_have_their_meaning_without_the_header() {
     let bench = Bench::new();
@@ -312,7 +312,7 @@ fn samples_whose_frame_is_missing_are_damaged_in_the_file() {
     assert_eq!((totals.damaged, totals.on_the_way()), (60, 20));
 }
 
-/// Whatever a file is made of: an error, or rows whose books add up.
+/// Any content of a file: an error, or rows whose books add up.
 #[test]
 fn no_bytes_are_too_strange() {
     let bench = Bench::new();

@@ -218,7 +218,7 @@ fn an_error_of_a_disk_in_the_background_ends_the_recording() {
     let mut recorder =
         Recorder::on(Background::new(model), Path::new("x"), &metadata("a test")).unwrap();
     let recorded = record(&mut recorder, &sent(1_100));
-    // The cause is told by whatever is asked afterwards, too.
+    // The cause is reported by every later call, too.
     let finished = recorder.finish().map(|_| ()).unwrap_err();
     for error in recorded.err().iter().chain([&finished]) {
         assert!(error.to_string().contains("No space left"), "{error}");

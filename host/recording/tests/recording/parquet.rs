@@ -234,7 +234,7 @@ fn a_group_that_is_lost_leaves_rows_and_parameters_in_step() {
     );
 }
 
-/// Where the seals of a file stand; the first one has no group.
+/// Positions of the seals of a file; the first one has no group.
 fn seals(file: &[u8]) -> Vec<usize> {
     let mark = b"\xe7crepitus group\x1c";
     let marks = file.windows(mark.len()).enumerate();
@@ -244,7 +244,7 @@ fn seals(file: &[u8]) -> Vec<usize> {
         .collect()
 }
 
-/// Where the footer of a file stands.
+/// Position of the footer of a file.
 fn footer_at(file: &[u8]) -> usize {
     let (rest, tail) = file.split_last_chunk::<8>().unwrap();
     let [a, b, c, d, ..] = *tail;
@@ -341,7 +341,7 @@ fn groups_that_are_out_of_order_are_named_and_kept() {
     assert_eq!(rows(&salvaged(&bench.write(&swapped))), bench.all);
 }
 
-/// Where each seal ends.
+/// End of each seal.
 fn seal_ends(file: &[u8]) -> Vec<usize> {
     let end = |at: &usize| {
         let length = file[at + 16..].first_chunk().unwrap();
@@ -385,7 +385,7 @@ fn a_group_of_another_recording_is_named_and_left_out() {
     );
 }
 
-/// Whatever a file is made of: an error, or rows whose books add up.
+/// Any content of a file: an error, or rows whose books add up.
 #[test]
 fn no_bytes_are_too_strange() {
     let bench = Bench::new(2_100);

@@ -86,7 +86,7 @@ pub(crate) enum Sent {
     Block(Box<Block>),
 }
 
-/// So many blocks without a loss, but for: 2 blocks that the device drops, one
+/// Returns so many blocks without a loss, but for: 2 blocks that the device drops, one
 /// that is lost on the way, a lost connection, a restart of the drive, and
 /// parameters that change now and then.
 pub(crate) fn sent(blocks: u64) -> Vec<Sent> {

@@ -1,4 +1,4 @@
-//! What an examiner would note of a symptom: where it was met, how fast, how strong,
+//! Notes that an examiner would make on a symptom: where it was met, how fast, how strong,
 //! how often.
 
 use crate::symptoms::loops::Loops;
@@ -11,11 +11,11 @@ pub(crate) struct Met {
     pub(crate) event: SymptomEvent,
     /// The largest torque since, as a magnitude, N·m: of a catch until it releases.
     pub(crate) most_nm: f64,
-    /// How far the joint went on from there until it had that torque, rad.
+    /// Distance that the joint went on from there until it had that torque, rad.
     pub(crate) within_rad: f64,
-    /// How far it went on in all, rad.
+    /// Distance that it went on in all, rad.
     pub(crate) beyond_rad: f64,
-    /// When a collapse had left a fifth, s after it.
+    /// Time from a collapse until it had left a fifth of the torque before it, s.
     pub(crate) fifth_s: Option<f64>,
     /// The torque at `within_rad`, N·m.
     within_nm: f64,
@@ -27,9 +27,9 @@ pub(crate) struct Met {
 pub(crate) struct Bout {
     pub(crate) start: SymptomEvent,
     pub(crate) beats: u32,
-    /// When the last beat began so far, s.
+    /// Time at which the last beat so far began, s.
     pub(crate) last_s: f64,
-    /// What ended it, and when, s.
+    /// Event that ended it, and its time, s.
     pub(crate) end: Option<(Word, f64)>,
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct Bout {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Beat {
     pub(crate) time_s: f64,
-    /// Which one of its bout; the first is 0.
+    /// Number of the beat in its bout; the first is 0.
     pub(crate) number: u32,
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct Found {
     pub(crate) met: Vec<Met>,
     pub(crate) bouts: Vec<Bout>,
     /// Whether a beat shows: not in the torque of several effects together.
-    pub(crate) beats_are_told: bool,
+    pub(crate) beats_are_counted: bool,
     pub(crate) beats: Vec<Beat>,
     pub(crate) movement: Movement,
     pub(crate) loops: Loops,
@@ -64,10 +64,10 @@ const SAME_NM: f64 = 0.005;
 const RELEASED: f64 = 0.9;
 
 impl Found {
-    /// Nothing yet.
-    pub(crate) fn new(beats_are_told: bool) -> Self {
+    /// Begins with nothing found.
+    pub(crate) fn new(beats_are_counted: bool) -> Self {
         Self {
-            beats_are_told,
+            beats_are_counted,
             ..Self::default()
         }
     }

@@ -16,7 +16,7 @@ use crepitus_plot::palette::{AXIS, ENCODER, Ink};
 use crepitus_plot::{Mark, Point};
 use crepitus_scene::trace::Word;
 
-/// Of the limits, the outer or only ones, and the others.
+/// Inks of the limits: of the outer or only ones, and of the others.
 const OUTER: Ink = AXIS;
 const INNER: Ink = ENCODER;
 
@@ -36,7 +36,7 @@ pub(crate) struct Line {
     pub(crate) points: Vec<Point>,
 }
 
-/// What is drawn of a symptom's limits.
+/// Drawn limits of a symptom.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Drawn {
     pub(crate) lines: Vec<Line>,
@@ -160,7 +160,7 @@ fn cogwheel(drawn: &mut Drawn, s: &CogwheelSettings, ends: (f64, f64)) {
     });
 }
 
-/// From an angle, deg, to the end of the chart in the sense of the stretch.
+/// Range from an angle, deg, to the end of the chart in the sense of the stretch.
 fn onwards(deg: f64, sense: f64, (low, high): (f64, f64)) -> (f64, f64) {
     (
         deg,

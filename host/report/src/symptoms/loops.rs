@@ -1,10 +1,10 @@
 //! The work that a symptom takes, from turn to turn: the area of its loop of torque
 //! over angle.
 
-/// How far the joint goes back before it has turned, rad: one degree.
+/// Angle by which the joint goes back before it has turned, rad: one degree.
 const TURNED_RAD: f64 = std::f64::consts::PI / 180.0;
 
-/// Where the joint turned, and the work until then.
+/// Angle at which the joint turned, and the work until then.
 #[derive(Clone, Copy, Debug)]
 struct Turn {
     angle_rad: f64,
@@ -14,7 +14,7 @@ struct Turn {
 /// One movement to and fro.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Loop {
-    /// What the hand did not get back, J.
+    /// Work that the hand did not get back, J.
     pub(crate) area_j: f64,
     /// The angles between which it was, rad.
     pub(crate) from_rad: f64,
@@ -26,7 +26,7 @@ pub(crate) struct Loop {
 pub(crate) struct Loops {
     last: Option<(f64, f64)>,
     work_j: f64,
-    /// As far as the joint has come since it turned.
+    /// Farthest point that the joint has reached since it turned.
     extreme: Option<Turn>,
     is_flexing: Option<bool>,
     /// The last two turns, the latest first.

@@ -1,4 +1,4 @@
-//! How far and how long the joint moved, and what happened meanwhile.
+//! Distance and duration of the joint's motion, and the events meanwhile.
 //!
 //! An angle comes in counts of an encoder, and rows may be shorter than a count takes: whether the
 //! joint moves is judged over a stretch of several rows.
@@ -11,7 +11,7 @@ const STRETCH_S: f64 = 0.02;
 /// Slower, a joint is at rest: one degree a second.
 const SLOWEST_RAD_S: f64 = std::f64::consts::PI / 180.0;
 
-/// How often something happened while the joint moved.
+/// Number of events of one kind while the joint moved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rate {
     pub(crate) word: Word,
@@ -24,9 +24,9 @@ pub(crate) struct Movement {
     pub(crate) travel_rad: f64,
     pub(crate) moving_s: f64,
     pub(crate) rates: Vec<Rate>,
-    /// Where the stretch began: s, rad.
+    /// Start of the stretch: s, rad.
     from: Option<(f64, f64)>,
-    /// What happened in it so far.
+    /// Events in it so far.
     waiting: Vec<Rate>,
 }
 

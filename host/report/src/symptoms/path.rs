@@ -7,7 +7,7 @@
 use crate::hysteresis::{Hysteresis, Range};
 use crepitus_plot::{Point, simplify};
 
-/// What cannot be seen: rad and N·m.
+/// Differences too small to be seen: rad and N·m.
 const UNSEEN: (f64, f64) = (2e-3, 5e-3);
 
 /// A movement in one direction: (rad, N·m).
@@ -136,7 +136,7 @@ impl Path {
     }
 }
 
-/// Whether two points are one on any chart.
+/// Returns whether two points are one on any chart.
 fn near(a: Point, b: Point) -> bool {
     (a.x - b.x).abs() < 0.1 * UNSEEN.0 && (a.y - b.y).abs() < 0.1 * UNSEEN.1
 }

@@ -50,7 +50,7 @@ fn near(found: f64, expected: f64, within: f64) {
     );
 }
 
-/// Whether a point is on one of these lines, within what can be seen.
+/// Returns whether a point is on one of these lines, within what can be seen.
 fn is_on(lines: &[(Point, Point)], at: Point) -> bool {
     lines.iter().any(|(a, b)| {
         let share = if a.x == b.x {
@@ -269,7 +269,7 @@ fn the_torque_of_a_recording_is_the_symptoms_own_where_nothing_else_was_on() {
     assert_eq!(shares(&[&columns[..3], &columns[4..]].concat()), [true]);
 }
 
-/// As a recording has them: the torque of all, and a phase.
+/// Columns and items as a recording has them: the torque of all, and a phase.
 fn as_recorded(columns: &[Column], items: &[Item], effect: &str) -> (Vec<Column>, Vec<Item>) {
     let spec = SPECS.iter().find(|spec| spec.name == effect).expect("one");
     let phase = spec.phases.expect("phases").column;

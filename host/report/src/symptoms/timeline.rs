@@ -1,5 +1,5 @@
 //! The torque of a symptom over time with its states and events: of the whole run,
-//! or, where that is more than can be told apart, of its first part.
+//! or, where that is more than can be distinguished, of its first part.
 
 use crepitus_plot::Thinned;
 use crepitus_scene::trace::SymptomEvent;
@@ -19,12 +19,12 @@ pub(crate) struct Timeline {
     pub(crate) stays: Vec<Stay>,
     pub(crate) events: Vec<SymptomEvent>,
     open: Option<Stay>,
-    /// When there were too many of either, s.
+    /// Time at which there were too many stays or events, s.
     until_s: Option<f64>,
 }
 
 impl Timeline {
-    /// Most states that are told apart on a chart, and most events.
+    /// Most states that are distinguished on a chart, and most events.
     pub(crate) const MOST: usize = 600;
     /// Bins of the line: more than a chart has pixels.
     pub(crate) const LINE: usize = 1600;
@@ -99,7 +99,7 @@ impl Timeline {
         self
     }
 
-    /// Where it ends, if that is before the end of the run, s.
+    /// Time of its end, if that is before the end of the run, s.
     pub(crate) fn until_s(&self) -> Option<f64> {
         self.until_s
     }

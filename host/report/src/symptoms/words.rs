@@ -13,7 +13,7 @@ pub(crate) struct Words {
 }
 
 impl Words {
-    /// Of all symptoms, in the order of the table of effects.
+    /// Words of all symptoms, in the order of the table of effects.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         SYMPTOMS.iter().map(|(spec, clinic)| Self { spec, clinic })
     }
@@ -23,7 +23,7 @@ impl Words {
         self.spec.name
     }
 
-    /// Above its charts.
+    /// Title above the charts of the effect.
     pub(crate) fn title(&self) -> &'static str {
         self.clinic.title
     }
@@ -33,7 +33,7 @@ impl Words {
         self.clinic.states
     }
 
-    /// Whether events lead from one state to another.
+    /// Returns whether events lead from one state to another.
     pub(crate) fn has_changes(&self) -> bool {
         !self.clinic.changes.is_empty()
     }

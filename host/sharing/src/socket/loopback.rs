@@ -28,7 +28,7 @@ const CONNECT: Duration = Duration::from_millis(100);
 /// Characters of a proof: 128 random bits.
 const PROOF_BYTES: usize = 32;
 
-/// What the file says.
+/// Content of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Meeting {
     port: u16,
@@ -92,8 +92,8 @@ pub(crate) struct Listener {
 }
 
 impl Listener {
-    /// Listens; `path` says where. What an earlier program has left there is replaced: whoever
-    /// calls this has the lock.
+    /// Listens; `path` says where. What an earlier program has left there is replaced: the caller
+    /// has the lock.
     ///
     /// # Errors
     /// Of the system: the folder is gone, no port is left.
@@ -111,7 +111,7 @@ impl Listener {
         })
     }
 
-    /// Whether the file still leads here.
+    /// Returns whether the file still leads here.
     pub(crate) fn is_found(&self) -> bool {
         Meeting::read(&self.path).is_ok_and(|found| found == self.meeting)
     }
@@ -164,10 +164,10 @@ impl Arrival {
     }
 }
 
-/// Connects to whoever listens at `path`.
+/// Connects to the program that listens at `path`.
 ///
 /// # Errors
-/// Nobody does, or another program has got the port since.
+/// No program does, or another one has got the port since.
 pub(crate) fn connect(path: &Path) -> io::Result<Stream> {
     let meeting = Meeting::read(path)?;
     let address = (Ipv4Addr::LOCALHOST, meeting.port).into();

@@ -14,13 +14,13 @@ pub(crate) type Stream = UnixStream;
 pub(crate) struct Listener {
     socket: UnixListener,
     path: PathBuf,
-    /// Of the path. Nothing else has it as long as this listens.
+    /// Device and inode of the path. Nothing else has them as long as this listens.
     identity: (u64, u64),
 }
 
 impl Listener {
-    /// Listens at `path`. What an earlier program has left there is replaced: whoever calls this
-    /// has the lock.
+    /// Listens at `path`. What an earlier program has left there is replaced: the caller has the
+    /// lock.
     ///
     /// # Errors
     /// Of the system: the folder is gone, or the path too long for a socket.
@@ -39,7 +39,7 @@ impl Listener {
         Ok(listener)
     }
 
-    /// Whether the path still leads here.
+    /// Returns whether the path still leads here.
     pub(crate) fn is_found(&self) -> bool {
         identity_of(&self.path).is_ok_and(|found| found == self.identity)
     }
@@ -86,10 +86,10 @@ impl Arrival {
     }
 }
 
-/// Connects to whoever listens at `path`.
+/// Connects to the program that listens at `path`.
 ///
 /// # Errors
-/// Nobody does.
+/// No program does.
 pub(crate) fn connect(path: &Path) -> io::Result<Stream> {
     UnixStream::connect(path)
 }

@@ -1,4 +1,4 @@
-//! What diagrams side by side share: how far their axes reach.
+//! Ranges of the axes that diagrams side by side share.
 
 use std::ops::RangeInclusive;
 
@@ -16,7 +16,7 @@ const HIGHEST: f64 = 1e100;
 pub(crate) struct Axes {
     pub(crate) cost: RangeInclusive<f64>,
     pub(crate) error: RangeInclusive<f64>,
-    /// Where an error of nothing stands.
+    /// Value at which an error of nothing is drawn.
     nothing: f64,
 }
 

@@ -9,7 +9,7 @@ use super::pair::Pair;
 /// diagram with an arrow down.
 pub(crate) const FLOOR: f64 = 1e-17;
 
-/// Why a point is in no curve.
+/// Reason why a point is in no curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Unfit {
     /// Events without a partner: errors of the others mean nothing.

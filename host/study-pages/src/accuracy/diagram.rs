@@ -20,7 +20,7 @@ const SIGN: f64 = 22.0;
 /// See the module.
 #[derive(Debug)]
 pub(crate) struct Diagram {
-    /// For files.
+    /// Name for files.
     pub(crate) name: String,
     pub(crate) precision: &'static str,
     pub(crate) svg: Svg,

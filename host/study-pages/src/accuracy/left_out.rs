@@ -1,4 +1,4 @@
-//! What no curve may show, listed: first of all wrong numbers of events.
+//! List of what no curve may show: first of all wrong numbers of events.
 
 use crepitus_study::accuracy::Point;
 use maud::{Markup, html};
@@ -16,7 +16,7 @@ struct Row {
     rung: &'static str,
     precision: &'static str,
     reason: &'static str,
-    /// From the longest step to the shortest.
+    /// Steps from the longest to the shortest.
     steps: Vec<String>,
 }
 
@@ -80,7 +80,7 @@ fn rows_of(pair: &Pair, rung: &'static str, precision: &'static str) -> Vec<Row>
     rows
 }
 
-/// Nothing if all points are in their curves.
+/// Table of the points left out; empty if all points are in their curves.
 pub(crate) fn table(study: &Study, pair: &Pair) -> Markup {
     let rows = rows(study, pair);
     html! {

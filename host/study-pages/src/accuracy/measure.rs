@@ -57,7 +57,7 @@ impl Measure {
         }
     }
 
-    /// For files.
+    /// Name for files.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::EventTime => "event-time",
@@ -85,7 +85,7 @@ impl Measure {
         }
     }
 
-    /// After a number; with its space.
+    /// Unit to stand after a number, with its space.
     pub(crate) fn unit(self) -> &'static str {
         match self {
             Self::EventTime => " s",
@@ -94,7 +94,7 @@ impl Measure {
         }
     }
 
-    /// From the larger to the smaller.
+    /// Perceptual lines from the larger to the smaller.
     pub(crate) fn lines(self) -> &'static [PerceptualLine] {
         match self {
             Self::EventTime => &EVENT_TIME,

@@ -11,12 +11,12 @@ use crepitus_plot::{Anchor, CurveStyle, Frame, Plot};
 /// Room for the sign before the name of a curve, CSS pixels.
 const SIGN: f64 = 11.0;
 
-/// What is named, and where it ends.
+/// Named line or curve, and its end.
 #[derive(Debug)]
 struct Named {
     end: (f64, f64),
     ink: Ink,
-    /// Of a curve.
+    /// Style of a curve; none for a line.
     style: Option<CurveStyle>,
     name: &'static str,
 }

@@ -6,7 +6,7 @@ use crepitus_study::accuracy::Point;
 /// The step of the device, s.
 pub(crate) const DEVICE_TICK_S: f64 = 5e-5;
 
-/// Whether a step is the device's tick, but for rounding.
+/// Returns whether a step is the device's tick, but for rounding.
 pub(crate) fn is_device_tick(step_s: f64) -> bool {
     (step_s - DEVICE_TICK_S).abs() < 1e-6 * DEVICE_TICK_S
 }
@@ -14,9 +14,9 @@ pub(crate) fn is_device_tick(step_s: f64) -> bool {
 /// See the module.
 #[derive(Debug)]
 pub(crate) struct Study<'p> {
-    /// What to look at first comes first.
+    /// Pairs, the one to look at first in front.
     pub(crate) pairs: Vec<Pair<'p>>,
-    /// In order of first appearance, as are the precisions.
+    /// Rungs in order of first appearance, as are the precisions.
     pub(crate) rungs: Vec<&'static str>,
     pub(crate) precisions: Vec<&'static str>,
 }
@@ -61,7 +61,7 @@ impl<'p> Study<'p> {
         study
     }
 
-    /// How many pairs, from the first on, a page shows unfolded.
+    /// Number of pairs, from the first on, that a page shows unfolded.
     pub(crate) fn in_full(&self) -> usize {
         let preferred = self.pairs.iter().take_while(|pair| pair.rank() < 2);
         preferred.count().max(1)

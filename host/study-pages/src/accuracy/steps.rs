@@ -11,7 +11,7 @@ use crepitus_plot::number::duration;
 use crepitus_plot::palette::TEXT;
 use crepitus_plot::{Anchor, Frame, Plot};
 
-/// From a point to the middle of its label, CSS pixels.
+/// Distance from a point to the middle of its label, CSS pixels.
 const AWAY: f64 = 12.0;
 /// Half the width and height of a label with some air.
 const HALF: (f64, f64) = (19.0, 7.5);
@@ -24,7 +24,7 @@ struct Label {
     covered: usize,
 }
 
-/// Only what covers nothing is drawn: the filled signs are there anyway.
+/// Draws only the labels that cover nothing: the filled signs are there anyway.
 pub(crate) fn draw(plot: &mut Plot, axes: &Axes, measure: Measure, curves: &[Curve]) {
     let mut inked = Vec::new();
     for piece in curves.iter().flat_map(|curve| &curve.pieces) {

@@ -12,7 +12,7 @@ use maud::{Markup, html};
 
 use super::pair::is_device_tick;
 
-/// At the device's tick, and by step; nothing without symptoms.
+/// Tables of the symptoms at the device's tick, and by step; empty without symptoms.
 pub(crate) fn symptoms(points: &[SymptomPoint]) -> Markup {
     let at_the_tick = points.iter().filter(|p| is_device_tick(p.step_s));
     let at_the_tick: Vec<SymptomPoint> = at_the_tick.cloned().collect();
@@ -47,7 +47,7 @@ fn by_step(points: &[SymptomPoint]) -> Markup {
     steps_table(&rows, &steps_s).to_html()
 }
 
-/// Nothing if it was not studied.
+/// Table of the actuator's command; empty if it was not studied.
 pub(crate) fn actuator(points: &[ActuatorPoint]) -> Markup {
     html! {
         @if !points.is_empty() {
@@ -62,7 +62,7 @@ pub(crate) fn actuator(points: &[ActuatorPoint]) -> Markup {
     }
 }
 
-/// What every rung, and what else the device does, costs on its core.
+/// Cost on the device's core of every rung, and of what else the device does.
 pub(crate) fn target(on: &OnTarget) -> Markup {
     html! {
         section.table.tick {

@@ -20,7 +20,7 @@ use crepitus_plot::{
 /// CSS pixels.
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 440.0;
-/// What is drawn: the error that says most of a rung.
+/// Measure that is drawn: the error that says most of a rung.
 const MEASURE: Measure = Measure::Frequency;
 const PRECISION: &str = "f32";
 const COST: &str = "Cycles of a step, modelled, 0 wait states; a tick has 8,400";
@@ -125,7 +125,7 @@ fn error(point: &Point) -> f64 {
     MEASURE.of(point).max(FLOOR)
 }
 
-/// In a column at the right, each with a thin line from the worst step.
+/// Draws the names in a column at the right, each with a thin line from the worst step.
 fn names(plot: &mut Plot, spots: &[Spot]) {
     let Frame {
         right: edge,

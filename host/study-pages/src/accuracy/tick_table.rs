@@ -46,7 +46,7 @@ fn cheapest(pair: &Pair, precision: &str) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Nothing without a point at this tick.
+/// Table at the device's tick; empty without a point at this tick.
 pub(crate) fn table(study: &Study, pair: &Pair) -> Markup {
     let rows = rows(study, pair);
     html! {
@@ -120,7 +120,7 @@ fn line(row: &Row) -> Markup {
     }
 }
 
-/// With one decimal where it is significant.
+/// Formats nanoseconds, with one decimal where it is significant.
 fn nanoseconds(value: f64) -> String {
     if value.is_finite() && value.abs() < 100.0 {
         fixed(value, 1)

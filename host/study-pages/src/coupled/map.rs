@@ -13,18 +13,18 @@ use maud::{Markup, html};
 const CELL: (f64, f64) = (24.0, 11.0);
 const LEFT: f64 = 58.0;
 const TOP: f64 = 74.0;
-/// Between panels.
+/// Gaps between panels.
 const GAP: (f64, f64) = (22.0, 40.0);
 const LEGEND: f64 = 92.0;
 
-/// What only this map has.
+/// Inks that only this map has.
 pub(super) const INKS: [Ink; 3] = [
     Ink::new("quiet", "#d6eaf6", "#16323f"),
     Ink::new("settles", "#82bde2", "#19566f"),
     Ink::new("rings", "#a8320c", "#e2663a"),
 ];
 
-/// Of a cell; none of one that no device takes.
+/// Ink of a cell; none of one that no device takes.
 fn ink(verdict: Verdict) -> Option<Ink> {
     let [quiet, settles, rings] = INKS;
     match verdict {
@@ -35,7 +35,7 @@ fn ink(verdict: Verdict) -> Option<Ink> {
     }
 }
 
-/// How a criterion is drawn.
+/// Line style of a criterion.
 struct Line {
     width: f64,
     dashes: Option<&'static str>,

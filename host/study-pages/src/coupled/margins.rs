@@ -28,7 +28,7 @@ pub(super) fn table(
     }
 }
 
-/// In words: how many times the joint's own stiffness.
+/// Onset in words: how many times the joint's own stiffness.
 fn onset(margin: &Margin) -> String {
     match (margin.onset, margin.verdict) {
         (Some(factor), Verdict::Rings) => format!("{factor:.2} times its stiffness: it rings"),

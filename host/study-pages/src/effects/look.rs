@@ -1,4 +1,4 @@
-//! How a variant is drawn, and called where there is little room.
+//! Look of a variant, and its name where there is little room.
 
 use crepitus_study::effects::Row;
 use crepitus_study::effects::variant::Change;
@@ -6,7 +6,7 @@ use crepitus_study::effects::variant::Change;
 use crepitus_plot::palette::{CURVES, TEXT};
 use crepitus_plot::{CurveStyle, Key, Marker, Sign};
 
-/// By what was done to the scene.
+/// Look of a variant, by what was done to the scene.
 pub(super) fn of(change: Change) -> CurveStyle {
     let (ink, marker) = match change {
         Change::Scene => (TEXT, Marker::Square),

@@ -5,7 +5,7 @@ use crepitus_plot::{Drawing, Frame};
 
 /// Height of a line, CSS pixels.
 const HEIGHT: f64 = 15.0;
-/// From a sign to its name.
+/// Distance from a sign to its name.
 const AWAY: f64 = 8.5;
 /// Half the width of a sign.
 const SIGN: f64 = 6.5;
@@ -37,7 +37,7 @@ pub(super) struct Sign<'n> {
     pub(super) arrow: bool,
 }
 
-/// For each sign the left end of the middle of its name.
+/// Places of the names: for each sign the left end of the middle of its name.
 pub(super) fn place(signs: &[Sign<'_>], frame: Frame) -> Vec<(f64, f64)> {
     let Frame {
         left,

@@ -108,7 +108,7 @@ fn costs(row: &Row, added: Option<&Added>) -> Markup {
     }
 }
 
-/// Of a cost that is lost in the timings its bound.
+/// Cost in words; of one that is lost in the timings its bound.
 fn cost(added: &AddedTime) -> String {
     match added.ns_per_step {
         Some(ns) => rounded(ns),
@@ -132,7 +132,7 @@ fn signed(n: i64) -> String {
     }
 }
 
-/// With the significant digits of a difference of torques.
+/// Formats a difference of torques, N·m, with its significant digits.
 pub(super) fn torque(nm: f64) -> String {
     if nm == 0.0 {
         "0 N·m".to_owned()

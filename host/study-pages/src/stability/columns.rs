@@ -10,7 +10,7 @@ use crepitus_study::stability::{Cell, Matrix, Row, Rung, Subject};
 #[derive(Debug)]
 pub(super) struct Columns {
     pub(super) groups: Vec<Group>,
-    /// In the order of the subjects.
+    /// Precisions in the order of the subjects.
     pub(super) precisions: Vec<Precision>,
 }
 
@@ -49,7 +49,7 @@ impl Columns {
         columns
     }
 
-    /// Of these columns those that a picture of a page's width has room for:
+    /// Returns those of these columns that a picture of a page's width has room for:
     /// in the precision of the device, and of `paper`, which differs from
     /// `physical` in the torque of a stick alone, two rungs.
     pub(super) fn pictured(mut self) -> Self {

@@ -5,7 +5,7 @@ use crepitus_study::stability::{Cell, Failure, Verdict};
 
 use super::scale::{self, Tone};
 
-/// Before the number of a cell that degrades.
+/// Prefix of the number of a cell that degrades.
 pub(super) const DEGRADES: &str = "↓";
 /// Prefix of the details of a failing cell.
 pub(super) const FAILS: &str = "✗";
@@ -82,7 +82,7 @@ fn short_count(count: u64) -> String {
     }
 }
 
-/// At most five letters: `2e-13`, `0.37`, `1002`.
+/// Formats a number in at most five characters: `2e-13`, `0.37`, `1002`.
 fn short(x: f64) -> String {
     let size = x.abs();
     if x == x.trunc() && size < 10_000.0 {

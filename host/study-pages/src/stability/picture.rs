@@ -14,7 +14,7 @@ use super::scale::{self, Tone};
 const WIDTH: f64 = 820.0;
 /// Names of cases.
 const NAMES: f64 = 204.0;
-/// Between conventions.
+/// Gap between conventions.
 const GAP: f64 = 8.0;
 /// Names of conventions and rungs.
 const HEAD: f64 = 148.0;
@@ -48,7 +48,7 @@ pub(super) fn picture(matrix: &Matrix) -> Picture {
     )
 }
 
-/// Where the columns stand: left edges by group, and the width of all.
+/// Positions of the columns: left edges by group, and the width of all.
 struct Places {
     left: Vec<Vec<f64>>,
     width: f64,

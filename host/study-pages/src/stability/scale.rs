@@ -22,7 +22,7 @@ const fn tone(name: &'static str, light: &'static str, dark: &'static str) -> To
     }
 }
 
-/// What holds, up to this share of the limit.
+/// Tones of what holds, each up to this share of the limit.
 pub(super) const HOLDS: [(f64, Tone); 5] = [
     (1e-4, tone("h0", "#f0f7fc", "#15232c")),
     (1e-2, tone("h1", "#d6eaf6", "#16323f")),

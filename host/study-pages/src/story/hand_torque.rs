@@ -66,7 +66,7 @@ fn panel(data: &HandTorque, variant: &VariantTorque) -> PanelData {
     }
 }
 
-/// What goes beyond the scale, in words, and the scale.
+/// Description of what goes beyond the scale, and the scale.
 fn scale(y: Scale, lines: &[&[(f64, f64)]; 2]) -> (String, Scale) {
     let [whole, middle] = [1.0, MIDDLE].map(|share| range(lines, share));
     let size = |(low, high): (f64, f64)| high - low;
@@ -82,7 +82,7 @@ fn scale(y: Scale, lines: &[&[(f64, f64)]; 2]) -> (String, Scale) {
     )
 }
 
-/// From where to where this share of each line's values is.
+/// Range in which this share of each line's values is.
 fn range(lines: &[&[(f64, f64)]; 2], share: f64) -> (f64, f64) {
     let tail = (1.0 - share) / 2.0;
     let mut range = (f64::INFINITY, f64::NEG_INFINITY);

@@ -1,4 +1,4 @@
-//! Why implicit Euler, stable at every step, loses the effect.
+//! Reason why implicit Euler, stable at every step, loses the effect.
 
 use super::{PanelData, Scale, Series, Story, mark};
 use crepitus_study::stability::story::{ImplicitEuler, Line, Method};

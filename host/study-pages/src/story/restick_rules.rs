@@ -61,7 +61,7 @@ pub(super) fn story(data: &RestickRules) -> Story {
     }
 }
 
-/// How many breaks there were so far: a staircase.
+/// Number of breaks so far: a staircase.
 fn counted(breaks_s: &[f64], duration_s: f64) -> Line {
     let mut line = vec![(0.0, 0.0)];
     for (count, time_s) in breaks_s.iter().enumerate() {

@@ -1,11 +1,11 @@
-//! What a hand gets back that turns round inside a slip, with the turn-back
+//! Work that a hand gets back that turns round inside a slip, with the turn-back
 //! guard and without it, and how close the worst comes to the bound.
 
 use super::{PanelData, Scale, Series, Story, mark};
 use crepitus_study::stability::story::TurnBack;
 
 const UNGUARDED: &str = "without the guard";
-/// By the delay of the torque.
+/// Names of the lines with the guard, by the delay of the torque.
 const GUARDED: [&str; 3] = [
     "with the guard",
     "with the guard, torque 1 tick late",

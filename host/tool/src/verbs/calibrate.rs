@@ -182,7 +182,7 @@ fn applied(client: &mut Client<Line>, changes: &[results::Change]) -> Result<u32
     Ok(revision.0)
 }
 
-/// Takes a step. An error is told with the step's name.
+/// Takes a step. An error is reported with the step's name.
 fn taken(
     step: Step,
     client: &mut Client<Line>,

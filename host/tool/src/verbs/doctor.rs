@@ -153,7 +153,7 @@ fn check(client: &mut Client<Line>, checks: &mut Vec<Check>) -> Result<(), crepi
     wires(client, checks)
 }
 
-/// What the drive measures beside the motion, and what arming needs.
+/// Checks what the drive measures beside the motion, and what arming needs.
 fn motor(
     client: &mut Client<Line>,
     status: &Status,

@@ -94,7 +94,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     print(&lines.collect::<String>())
 }
 
-/// What is followed, and shown.
+/// State of the monitor: what is followed, and shown.
 struct Monitor {
     arming: Arming,
     has_begun: bool,
@@ -162,8 +162,8 @@ impl Monitor {
         Ok(())
     }
 
-    /// Obeys a key; returns whether to quit.
-    fn obey(&mut self, key: Key, client: &mut Client<Line>) -> Result<bool, Failure> {
+    /// Executes a key's command; returns whether to quit.
+    fn execute(&mut self, key: Key, client: &mut Client<Line>) -> Result<bool, Failure> {
         match key {
             Key::Stop => client.stop().map_err(failure)?,
             Key::Disarm => {
@@ -220,7 +220,7 @@ impl Follower for Monitor {
             self.begin(client)?;
         }
         while let Some(key) = self.keys.next() {
-            if self.obey(key, client)? {
+            if self.execute(key, client)? {
                 return Ok(true);
             }
         }

@@ -57,7 +57,7 @@ enum Action {
     },
     /// Set parameters, all or none.
     Set {
-        /// What to set.
+        /// Parameters with their new values.
         #[arg(value_name = "NAME=VALUE", required = true, value_parser = key_and_value)]
         values: Vec<(String, String)>,
     },
@@ -214,7 +214,7 @@ fn set(
     .print(as_json)
 }
 
-/// What a verb has changed.
+/// Change that a verb has made.
 struct Done {
     revision: Revision,
     what: &'static str,

@@ -218,7 +218,7 @@ fn note_step(collector: &mut Collector, before: Option<&Row>, row: &Row, books: 
     }
 }
 
-/// When the accounting begins, s: before the first row, if samples are missing there.
+/// Start of the accounting, s: before the first row, if samples are missing there.
 fn first_time_s(first: &Row, books: &Books) -> f64 {
     let gaps = books.gaps.iter().take_while(|gap| gap.row == 0);
     let missing = gaps.map(|gap| gap.samples).sum();

@@ -15,7 +15,7 @@ use crepitus_usb::cabled::CabledDevice;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
-/// What is at the end of the cable.
+/// Device at the end of the cable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Kind {
     /// The device's code, compiled for this computer.
@@ -39,13 +39,13 @@ A simulated device as a serial port that any program can open, in real time, unt
 `crepitus devices` lists it.
 
 With --usbip it is a USB device instead, for the system's own drivers: once it is attached, as root, it \
-is /dev/ttyACM0. USB/IP has no authentication: whoever can reach the port can use the device.")]
+is /dev/ttyACM0. USB/IP has no authentication: any program that reaches the port can use the device.")]
 pub(crate) struct Arguments {
     /// The scene that sets its leg and parameters.
     #[arg(long, value_name = "SCENE", default_value = "passive-examination")]
     scene: PathBuf,
 
-    /// What is served.
+    /// Device to serve.
     #[arg(long, value_name = "KIND", default_value = "sim")]
     device: Kind,
 

@@ -144,7 +144,7 @@ fn threads(text: &str) -> Result<usize, String> {
     }
 }
 
-/// How many runs are estimated.
+/// Number of runs that are estimated.
 #[derive(Clone, Copy, Debug)]
 enum Extent {
     /// Those of the sweep.
@@ -214,7 +214,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     done(&plan, &table, Some(&ran), as_json)
 }
 
-/// What this program has run of a sweep.
+/// Runs of a sweep that this program has carried out.
 struct Ran {
     runs: u64,
     threads: usize,
@@ -324,11 +324,11 @@ fn no_thread(error: &std::io::Error) -> Failure {
 /// Makes the table.
 fn table(store: &mut Store, format: Format, out: &Path) -> Result<Written, Failure> {
     let mut bar = crate::progress::Progress::of_table();
-    let mut go_on = |share| {
+    let mut poll = |share| {
         bar.reached(share);
         !interrupt::requested()
     };
-    store.finish(format, &mut go_on).map_err(|e| match e {
+    store.finish(format, &mut poll).map_err(|e| match e {
         TableError::Io(e) if e.kind() == std::io::ErrorKind::Interrupted => Failure::Work(
             "interrupted: all rows are there, and the same command makes the table".to_owned(),
         ),

@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     speeds: Option<Vec<f64>>,
 
-    /// How often everything is off at once.
+    /// Number of draws in which all numbers are off at once.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(..=MOST_DRAWS))]
     draws: u32,
 

@@ -215,7 +215,7 @@ fn value(mark: &Mark) -> String {
     )
 }
 
-/// What fails, by how much and where.
+/// Failures of a candidate, each with its size and place.
 fn why_not(c: &Candidate) -> String {
     let mut reasons = Vec::new();
     if let Some(lost) = &c.unmatched {

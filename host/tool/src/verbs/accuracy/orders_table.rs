@@ -42,7 +42,7 @@ fn cell(order: Order) -> String {
     }
 }
 
-/// What the orders are of, each once.
+/// Values of `of` over the orders, each once.
 fn distinct<'a, T: PartialEq>(
     orders: impl IntoIterator<Item = &'a Orders>,
     of: impl Fn(&'a Orders) -> T,

@@ -111,7 +111,7 @@ fn missed_ends(study: &Study) -> Vec<String> {
 
 /// Warning if the timings spread: the machine was busy.
 fn unsteady(points: &[Point]) -> Option<String> {
-    /// From here on two costs that differ by a fifth may be the same.
+    /// Spread from which on two costs that differ by a fifth may be the same.
     const UNSTEADY: f64 = 0.2;
     let count = points.iter().filter(|p| p.time_spread > UNSTEADY).count();
     (count > 0).then(|| {

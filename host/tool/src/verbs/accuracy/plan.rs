@@ -1,4 +1,4 @@
-//! What the command line asks to be studied.
+//! Plan of the study that the command line asks for.
 
 use super::Arguments;
 use crate::failure::Failure;

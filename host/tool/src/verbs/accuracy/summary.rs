@@ -15,9 +15,9 @@ pub(super) struct Summary<'a> {
     #[serde(rename = "summary_version")]
     version: u32,
     pub(super) crepitus_version: &'static str,
-    /// Where the times were measured.
+    /// Computer on which the times were measured.
     host: String,
-    /// Which clock they are of.
+    /// Clock of these times.
     clock: &'static str,
     quick: bool,
     precisions: Vec<&'static str>,
@@ -40,7 +40,7 @@ impl<'a> Summary<'a> {
         }
     }
 
-    /// What the times were measured on, and in which build.
+    /// Computer, clock and build of the measured times.
     pub(super) fn measured_on(&self) -> String {
         studying::measured_on(&self.host)
     }

@@ -7,7 +7,7 @@ use crepitus_study::accuracy::symptoms::table::precisions_table;
 use crepitus_study::accuracy::target::inputs::TICK_S;
 use crepitus_table::show::microseconds;
 
-/// At the device's tick, or the studied step that is nearest to it.
+/// Table of the symptoms at the device's tick, or the studied step that is nearest to it.
 pub(super) fn table(points: &[SymptomPoint]) -> String {
     let away = |h: f64| (h / TICK_S).ln().abs();
     let steps = points.iter().map(|p| p.step_s);

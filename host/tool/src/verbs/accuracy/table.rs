@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// The device's tick, s.
 const TICK_S: f64 = 5e-5;
 
-/// For each convention every rung at the device's tick, or at the studied step
+/// Table, for each convention, of every rung at the device's tick, or at the studied step
 /// that is nearest to it: the worst of all scenes.
 pub(super) fn at_the_tick(study: &Study) -> String {
     let away = |h: f64| (h / TICK_S).ln().abs();

@@ -1,4 +1,4 @@
-//! What the ladder costs on the target: `--target`.
+//! Costs of the ladder on the target: `--target`.
 
 use crate::failure::Failure;
 use crate::output::to_stderr;
@@ -35,7 +35,7 @@ pub(super) fn add(
     )
 }
 
-/// Where the target chooses, what it chooses by.
+/// Criterion by which the target chooses, where it does.
 pub(super) fn chooses_by(on: &target::OnTarget) -> String {
     format!(
         "By mean cycles on the target ({}), equal means by the worst observed; that must fit {:.0} % of a tick, {:.0} \
@@ -46,7 +46,7 @@ pub(super) fn chooses_by(on: &target::OnTarget) -> String {
     )
 }
 
-/// As a table, for the terminal and for a page of the book.
+/// Returns the costs on the target as a table, for the terminal and for a page of the book.
 pub(super) fn table(on: &target::OnTarget) -> String {
     format!(
         "A step on the target, in f32 at the device's tick ({}; a tick has {}):\n\n{}\n\

@@ -7,7 +7,7 @@ use crepitus_client::Client;
 use crepitus_connection::device_text;
 use crepitus_protocol::State;
 
-/// What device it is, and whether it is ready: no fault, not armed.
+/// Identity of the device, and whether it is ready: no fault, not armed.
 pub(super) fn found(client: &mut Client<Line>) -> Result<Finding, Failure> {
     let status = client.status().map_err(failure)?;
     let handshake = client.handshake();

@@ -1,4 +1,4 @@
-//! What a step has found.
+//! Finding of a step.
 
 use super::step::Step;
 use crepitus_identify::Estimate;
@@ -8,9 +8,9 @@ use std::fmt::Write;
 /// Whether it is as it should be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// As it should be.
+    /// Found as it should be.
     Good,
-    /// Not as it should be: the exit code tells.
+    /// Found not as it should be, which the exit code reports.
     Bad,
     /// The step could not tell.
     Unknown,
@@ -19,7 +19,7 @@ pub(super) enum Verdict {
 }
 
 impl Verdict {
-    /// For people and files.
+    /// Name of the verdict, for people and files.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Good => "good",
@@ -63,7 +63,7 @@ impl Number {
     }
 }
 
-/// What a step has found.
+/// Finding of a step.
 #[derive(Clone, Debug)]
 pub(super) struct Finding {
     /// None of the connection itself.
@@ -71,7 +71,7 @@ pub(super) struct Finding {
     pub(super) verdict: Verdict,
     pub(super) values: Vec<Number>,
     pub(super) remarks: Vec<String>,
-    /// What to do if it is not good.
+    /// Remedy if the verdict is not good.
     pub(super) remedy: Option<String>,
     /// Full names of parameters, and what they should be.
     pub(super) proposals: Vec<(String, f64)>,
@@ -80,7 +80,7 @@ pub(super) struct Finding {
 }
 
 impl Finding {
-    /// Nothing yet.
+    /// Finding of which only the step and the verdict are known yet.
     pub(super) fn new(step: impl Into<Option<Step>>, verdict: Verdict) -> Self {
         Self {
             step: step.into(),
@@ -98,7 +98,7 @@ impl Finding {
         Self::new(step, Verdict::Skipped).remark(why)
     }
 
-    /// With a number.
+    /// Adds a number.
     pub(super) fn value(
         mut self,
         name: &'static str,
@@ -115,7 +115,7 @@ impl Finding {
         self
     }
 
-    /// With an estimate of what is a parameter somewhere.
+    /// Adds an estimate of a value that is a parameter somewhere.
     pub(super) fn estimate(
         self,
         name: &'static str,
@@ -125,30 +125,30 @@ impl Finding {
         self.value(name, found.value, Some(found.half_width), spec.unit)
     }
 
-    /// With a sentence.
+    /// Adds a sentence.
     pub(super) fn remark(mut self, text: impl Into<String>) -> Self {
         self.remarks.push(text.into());
         self
     }
 
-    /// With what to do.
+    /// Sets the remedy: what to do.
     pub(super) fn remedy(mut self, text: impl Into<String>) -> Self {
         self.remedy = Some(text.into());
         self
     }
 
-    /// With a value for a parameter.
+    /// Adds a value to propose for a parameter.
     pub(super) fn propose(mut self, name: &str, value: f64) -> Self {
         self.proposals.push((name.to_owned(), value));
         self
     }
 
-    /// Of the step, for people and files.
+    /// Name of the step, for people and files.
     pub(super) fn name(&self) -> &'static str {
         self.step.map_or("connect", Step::name)
     }
 
-    /// For people.
+    /// Text for people.
     pub(super) fn text(&self) -> String {
         let mut text = format!("{}: {}\n", self.name(), self.verdict.name());
         // Writing to a String cannot fail.

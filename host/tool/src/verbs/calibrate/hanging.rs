@@ -24,11 +24,11 @@ use std::time::Duration;
 /// The parameter that this step finds.
 const TORQUE_CONSTANT: &str = "motor.torque_constant_nm_per_a";
 
-/// By how much a motor may differ from its data sheet, as a share: ±10 % are usual. Beyond it a weight that was
-/// given wrongly is more likely.
+/// Tolerated difference of a motor from its data sheet, as a share: ±10 % are usual. Beyond it a weight that
+/// was given wrongly is more likely.
 const TOLERANCE: f64 = 0.15;
 
-/// For how long the weight has to hang still before, and by how much it may move, counts.
+/// Time for which the weight has to hang still before, and the most that it may move, counts.
 const STILL: Duration = Duration::from_millis(500);
 const STILL_COUNTS: i32 = 200;
 

@@ -1,4 +1,4 @@
-//! The person at the brace: is told what to do, and says when it is done.
+//! The person at the brace: gets instructions, and says when each is done.
 
 use super::step::Step;
 use crate::failure::Failure;
@@ -10,10 +10,10 @@ use crepitus_client::{Client, Event};
 use std::io::{IsTerminal, stdin};
 use std::time::Duration;
 
-/// Between two looks at the keys.
+/// Time between two looks at the keys.
 const POLL: Duration = Duration::from_millis(20);
 
-/// What the person says.
+/// Answer of the person.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Answer {
     /// Take the step.
@@ -43,12 +43,12 @@ impl Person {
         })
     }
 
-    /// Whether motions end by a key.
+    /// Returns whether motions end by a key.
     pub(super) fn is_there(&self) -> bool {
         self.is_there
     }
 
-    /// How long a motion is looked at; until a key is pressed if somebody is there.
+    /// Time for which a motion is looked at; `None` if somebody is there: then until a key is pressed.
     pub(super) fn time(&self) -> Option<Duration> {
         (!self.is_there).then_some(self.for_s)
     }

@@ -15,22 +15,22 @@ use std::time::Duration;
 /// Speed of the neutral angle, rad/s: 8 deg/s. A weight with 0.3 kg·m² that moves as fast has 3 mJ.
 const SPEED_RAD_S: f64 = 0.14;
 
-/// Between two steps of the neutral angle.
+/// Time between two steps of the neutral angle.
 const BETWEEN: Duration = Duration::from_millis(20);
 
-/// How far the weight is moved at most, rad: 100 deg.
+/// Largest arc over which the weight is moved, rad: 100 deg.
 const ARC_RAD: f64 = 1.75;
 
 /// Share of the lasting torque that is used.
 const SHARE: f64 = 0.92;
 
-/// Before the torque fades at an end of the range, deg.
+/// Room before the torque fades at an end of the range, deg.
 const ROOM_DEG: f64 = 2.0;
 
 /// Longer than a whole arc takes.
 pub(super) const MOST: Duration = Duration::from_secs(90);
 
-/// Once the neutral angle cannot move further, how long the weight is awaited.
+/// Time for which the weight is awaited once the neutral angle cannot move further.
 const AWAITED: Duration = Duration::from_millis(700);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +86,7 @@ pub(super) fn spring_at(angle_rad: f64) -> LeadPipeSettings {
 }
 
 impl Pulled {
-    /// With the spring's parameters in use.
+    /// Returns the experiment with the spring's parameters in use.
     pub(super) fn new(
         values: &Values,
         revision: Revision,
@@ -134,12 +134,12 @@ impl Pulled {
         all
     }
 
-    /// Whether both ways were taken to their ends.
+    /// Returns whether both ways were taken to their ends.
     pub(super) fn is_done(&self) -> bool {
         self.way == Way::Done
     }
 
-    /// How far the weight was moved, rad.
+    /// Arc over which the weight was moved, rad.
     pub(super) fn arc_rad(&self) -> f64 {
         let furthest = self
             .there
@@ -148,7 +148,7 @@ impl Pulled {
         furthest.fold(0.0, f64::max)
     }
 
-    /// Whether the present way is at its end. The torque grows only until the weight gives way.
+    /// Returns whether the present way is at its end. The torque grows only until the weight gives way.
     fn is_at_end(&self, now: Duration) -> bool {
         let gone = (self.angle_rad - self.from_rad) * self.sense;
         let is_stuck = self.stuck_since.is_some_and(|since| now >= since + AWAITED);

@@ -12,13 +12,13 @@ use crepitus_model::parameters::Source;
 use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_protocol::Values;
 
-/// A knee bends to about 140 deg, and hyperextends by some 10: beyond these it is none.
+/// A knee bends to about 140 deg, and hyperextends by some 10: beyond these it is not a knee.
 const KNEE_DEG: (f64, f64) = (-15.0, 160.0);
 
 /// A brace that bends less than this was not moved to its stop, or is not one for an examination.
 const LEAST_FLEXION_DEG: f64 = 90.0;
 
-/// What counts as motion.
+/// Least change of the angle that counts as motion, deg.
 const LEAST_DEG: f64 = 5.0;
 
 /// Looks at a motion by hand.
@@ -46,7 +46,7 @@ pub(super) fn found(client: &mut Client<Line>, person: &Person) -> Result<Findin
     Ok(finding)
 }
 
-/// What angles from least to most say of the brace.
+/// Judges the brace by the angles that it reached, from least to most.
 fn judged(least_deg: f64, most_deg: f64, values: &Values) -> Finding {
     let range: RangeSettings = values.read();
     let finding = |verdict| {

@@ -1,4 +1,4 @@
-//! What a calibration leaves: a table, JSON, files, and changes of parameters.
+//! Results of a calibration: a table, JSON, files, and changes of parameters.
 
 use super::finding::Finding;
 use super::page;
@@ -23,7 +23,8 @@ pub(super) struct Change {
     pub(super) value: f64,
 }
 
-/// What all steps propose; where two propose the same, the first. Within the parameter's range, with four digits.
+/// Proposals of all steps; where two propose the same, the first. Within the parameter's range, with four
+/// digits.
 pub(super) fn changes(findings: &[Finding]) -> Result<Vec<Change>, Failure> {
     let mut changes: Vec<Change> = Vec::new();
     for (name, value) in findings.iter().flat_map(|finding| &finding.proposals) {
@@ -70,7 +71,7 @@ pub(super) fn text(findings: &[Finding], changes: &[Change]) -> String {
     text
 }
 
-/// As JSON.
+/// Returns findings, changes and revision as JSON.
 pub(super) fn summary(findings: &[Finding], changes: &[Change], revision: Option<u32>) -> Json {
     let steps: Vec<Json> = findings
         .iter()

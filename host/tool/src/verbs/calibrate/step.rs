@@ -20,22 +20,22 @@ crepitus_model::named! {
 }
 
 impl Step {
-    /// Whether a known weight hangs in the brace.
+    /// Returns whether a known weight hangs in the brace.
     pub(super) fn needs_weight(self) -> bool {
         matches!(self, Self::Friction | Self::TorqueConstant)
     }
 
-    /// Whether the angle has to have its zero: without one the device is not armed.
+    /// Returns whether the angle has to have its zero: without one the device is not armed.
     pub(super) fn needs_zero(self) -> bool {
         matches!(self, Self::Range | Self::Polarity | Self::TorqueConstant)
     }
 
-    /// Whether the person says when the motion has ended.
+    /// Returns whether the person says when the motion has ended.
     pub(super) fn ends_by_hand(self) -> bool {
         matches!(self, Self::Range | Self::Friction)
     }
 
-    /// What to do.
+    /// Instruction to the person.
     pub(super) fn instruction(self) -> &'static str {
         match self {
             Self::Zero => {

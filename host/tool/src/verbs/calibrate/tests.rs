@@ -20,7 +20,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Duration;
 
-/// What the weight of the scene `weight-on-the-arm` is.
+/// Weight of the scene `weight-on-the-arm`.
 const WEIGHT: Known = Known::new(0.61, 0.25, 0.01);
 
 /// A device that breaks.

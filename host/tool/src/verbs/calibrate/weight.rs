@@ -56,7 +56,7 @@ impl Known {
         }
     }
 
-    /// As the identification of the brace takes it.
+    /// The weight as the identification of the brace takes it.
     pub(super) fn swinging(&self) -> Weight {
         let deviation = self.share / DEVIATIONS;
         Weight::new(self.kg, self.lever_m, self.inertia_kg_m2, deviation)
@@ -64,7 +64,7 @@ impl Known {
 }
 
 impl WeightArguments {
-    /// Whether there is one.
+    /// Returns whether there is one.
     pub(super) fn is_given(&self) -> bool {
         self.weight_kg.is_some()
     }

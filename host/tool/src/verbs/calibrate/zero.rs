@@ -8,10 +8,10 @@ use crate::line::{Line, failure};
 use crepitus_client::Client;
 use std::time::Duration;
 
-/// How long the joint has to stay.
+/// Time for which the joint has to stay.
 const STAYS: Duration = Duration::from_secs(1);
 
-/// By how much it may move meanwhile, deg: a hand's tremor, and less than what matters to a range of motion.
+/// Most that it may move meanwhile, deg: a hand's tremor, and less than what matters to a range of motion.
 const MOST_DEG: f64 = 0.5;
 
 /// Sets the zero, and looks whether the angle stays there.

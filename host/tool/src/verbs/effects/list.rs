@@ -66,7 +66,7 @@ fn parameters(effect: &Effect) -> Table<'static, ParameterSpec> {
         .headed("")
 }
 
-/// In as few digits as say it.
+/// Returns the number in the fewest digits that express it.
 fn number(x: f64) -> String {
     if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
         format!("{x}")

@@ -8,7 +8,7 @@ use crepitus_study::limits::Limited;
 use crepitus_table::Table;
 use std::fmt::Write;
 
-/// What it is, what was dropped, and why the rest is kept.
+/// The smallest set, what was dropped, and why the rest is kept.
 pub(super) fn words(answer: &Answer) -> String {
     let chosen = &answer.chosen;
     let limits: Vec<String> = answer

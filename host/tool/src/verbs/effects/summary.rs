@@ -20,9 +20,9 @@ pub(super) struct Summary<'a> {
     #[serde(rename = "summary_version")]
     version: u32,
     pub(super) crepitus_version: &'static str,
-    /// Where the times were measured.
+    /// Computer on which the times were measured.
     host: String,
-    /// Which clock they are of.
+    /// Clock of these times.
     clock: &'static str,
     pub(super) conclusion: String,
     #[serde(flatten)]
@@ -41,13 +41,13 @@ impl<'a> Summary<'a> {
         }
     }
 
-    /// What the times were measured on, and in which build.
+    /// Computer, clock and build of the measured times.
     pub(super) fn measured_on(&self) -> String {
         format!("one core, {}", studying::measured_on(&self.host))
     }
 }
 
-/// Which effects matter, which do not, and which are missing.
+/// Sentences on the effects that matter, those that do not, and those that are missing.
 fn conclusion(study: &EffectsStudy) -> String {
     let rows = study.by_influence();
     let of = |change| rows.iter().filter(move |row| row.change == change);
@@ -114,7 +114,7 @@ fn costliest(rows: &[&Row]) -> Option<String> {
 
 /// Warning if the timings spread: the machine was busy.
 pub(super) fn unsteady(study: &EffectsStudy) -> Option<String> {
-    /// Above this spread, small costs cannot be measured.
+    /// Spread above which small costs cannot be measured.
     const UNSTEADY: f64 = 0.1;
     let spread = study.time_spread();
     (spread > UNSTEADY).then(|| {

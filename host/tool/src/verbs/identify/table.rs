@@ -17,7 +17,7 @@ fn value(shown: &Shown) -> [String; 2] {
     }
 }
 
-/// For people: the values, then why others are missing.
+/// Text for people: the values, then the reasons why others are missing.
 pub(super) fn text(brace: &Brace) -> String {
     let mut text = Table::of(&brace.shown)
         .people("quantity", |shown| shown.quantity.name())
@@ -51,7 +51,7 @@ pub(super) fn text(brace: &Brace) -> String {
     text
 }
 
-/// As JSON.
+/// Returns the values of the brace as JSON.
 pub(super) fn summary(brace: &Brace, weight: &Weight) -> Value {
     let values: Vec<Value> = (brace.shown.iter())
         .map(|shown| {

@@ -32,7 +32,7 @@ pub(super) struct ChirpArguments {
 }
 
 impl ChirpArguments {
-    /// In whole numbers, as the device takes it.
+    /// The chirp in whole numbers, as the device takes it.
     pub(super) fn played(&self) -> Result<PlayedChirp, Failure> {
         // A cast from float saturates; the ranges are checked below.
         #[expect(

@@ -1,4 +1,4 @@
-//! What tells the mass: a balance, or a mass that was added.
+//! Evidence of the moving mass: a balance, or a mass that was added.
 
 use crate::failure::Failure;
 use clap::Args;
@@ -7,7 +7,7 @@ use crepitus_identify::actuator::{MassEvidence, Series, Weighed};
 /// Masses as they were weighed.
 #[derive(Debug, Args)]
 pub(super) struct Masses {
-    /// What moves, weighed, g: with a third of the flexure.
+    /// Moving mass as weighed, g: with a third of the flexure.
     #[arg(
         long,
         value_name = "G",
@@ -20,7 +20,7 @@ pub(super) struct Masses {
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     added_mass_g: Option<f64>,
 
-    /// How well masses are known, ±%.
+    /// Uncertainty of the masses, ±%.
     #[arg(
         long,
         value_name = "%",
@@ -33,9 +33,9 @@ pub(super) struct Masses {
 /// The same, checked.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WeighedMasses {
-    /// What moves, if it was weighed: then it is no result.
+    /// Moving mass, if it was weighed: then it is no result.
     pub(super) moving: Option<Weighed>,
-    /// What is added for a second chirp.
+    /// Mass that is added for a second chirp.
     pub(super) added: Option<Weighed>,
 }
 

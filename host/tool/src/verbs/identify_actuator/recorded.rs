@@ -20,12 +20,12 @@ pub(super) struct Recordings {
     from_added: Option<PathBuf>,
 }
 
-/// What was measured.
+/// Series that were measured.
 #[derive(Debug)]
 pub(super) struct Measured {
-    /// Without an added mass.
+    /// Series without an added mass.
     pub(super) bare: Series,
-    /// With it.
+    /// Series with the added mass, if it was measured.
     pub(super) with_added: Option<Series>,
 }
 

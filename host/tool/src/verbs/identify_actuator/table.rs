@@ -21,7 +21,7 @@ pub(super) struct Row {
     source: &'static str,
 }
 
-/// Where a value comes from.
+/// Source of a value.
 const CHIRP: &str = "chirp";
 const WEIGHED: &str = "weighed";
 const CHIRP_AND_WEIGHT: &str = "chirp, weight";
@@ -119,7 +119,7 @@ pub(super) fn rows(
     ]
 }
 
-/// As a table; `compared` says what the values of comparison are.
+/// Returns the rows as a table; `compared` says what the values of comparison are.
 pub(super) fn text(rows: &[Row], compared: &str) -> String {
     Table::of(rows)
         .people("parameter", |row| row.name)
@@ -138,7 +138,7 @@ pub(super) fn text(rows: &[Row], compared: &str) -> String {
         .to_text()
 }
 
-/// What else people should see.
+/// Further facts that people should see.
 pub(super) fn facts(found: &Actuator) -> String {
     format!(
         "{:.2} V moved the mass by ±{:.2} mm; noise of the current {:.1} mA, {:.2} % of it unexplained.\n",
@@ -149,7 +149,7 @@ pub(super) fn facts(found: &Actuator) -> String {
     )
 }
 
-/// As JSON.
+/// Returns the values of the actuator as JSON.
 pub(super) fn summary(found: &Actuator, rows: &[Row], notes: &[String]) -> Value {
     let values: Vec<Value> = (rows.iter())
         .map(|row| {
@@ -187,7 +187,7 @@ pub(super) fn changes(rows: &[Row]) -> Result<Vec<(u8, f64)>, Failure> {
         .collect()
 }
 
-/// To the second digit of its uncertainty.
+/// Returns the value, rounded to the second digit of its uncertainty.
 fn rounded(estimate: &Estimate) -> String {
     let place = estimate.half_width.abs().log10().floor();
     if !place.is_finite() {
@@ -202,7 +202,7 @@ fn rounded(estimate: &Estimate) -> String {
     format!("{:.decimals$}", estimate.value)
 }
 
-/// So many significant digits.
+/// Returns the value with this number of significant digits.
 fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");

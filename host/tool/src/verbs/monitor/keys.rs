@@ -3,10 +3,10 @@
 use crossterm::event::{Event, KeyCode, KeyEventKind, KeyModifiers, poll, read};
 use std::time::Duration;
 
-/// What a key asks for.
+/// Command of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Key {
-    /// Torque off at once, whoever has armed.
+    /// Torque off at once, regardless of which program has armed.
     Stop,
     /// Disarm.
     Disarm,

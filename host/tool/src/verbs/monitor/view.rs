@@ -1,4 +1,4 @@
-//! What the monitor shows.
+//! View of the monitor: its content and its drawing.
 
 use crepitus_client::Accounting;
 use crepitus_connection::device_text;
@@ -47,7 +47,7 @@ impl Counts {
     }
 }
 
-/// What is shown.
+/// Content that is shown.
 #[derive(Debug)]
 pub(super) struct View {
     device: String,

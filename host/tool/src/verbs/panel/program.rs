@@ -1,4 +1,4 @@
-//! What the tool knows and can do for the panel.
+//! Knowledge and services of the tool for the panel.
 
 use crate::interrupt;
 use crate::line::{Line, failure_with, holder, named};

@@ -96,7 +96,7 @@ pub(super) fn changed(now: &Values, values: &Values) -> Vec<&'static str> {
         .collect()
 }
 
-/// Whether it switches an effect.
+/// Returns whether it switches an effect.
 fn is_switch(parameter: &Parameter) -> bool {
     matches!(parameter.kind, Kind::Choice(choice) if choice.key == RENDER)
 }
@@ -108,7 +108,7 @@ struct Difference {
     other: f64,
 }
 
-/// What differs on the device from the defaults, or from what `what` would make of it.
+/// Prints in which parameters the device differs from the defaults, or from what `what` would make of it.
 pub(super) fn diff(
     device: &DeviceArguments,
     what: Option<&Path>,

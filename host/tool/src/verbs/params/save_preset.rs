@@ -20,7 +20,7 @@ pub(super) struct SavePreset {
     #[arg(long)]
     title: Option<String>,
 
-    /// What to feel for, one line.
+    /// Sensation to feel for, one line.
     #[arg(long)]
     feel: Option<String>,
 
@@ -32,7 +32,7 @@ pub(super) struct SavePreset {
     #[arg(long, value_parser = PossibleValuesParser::new(Level::ALL.map(Level::name)))]
     level: Option<String>,
 
-    /// Where the numbers are from, one line.
+    /// Source of the numbers, one line.
     #[arg(long)]
     source: Option<String>,
 

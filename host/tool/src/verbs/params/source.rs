@@ -1,4 +1,4 @@
-//! What parameters can be taken from: a preset, a scene, or a file of either kind.
+//! Sources of parameters: a preset, a scene, or a file of either kind.
 
 use crate::failure::Failure;
 use crate::own_presets;

@@ -1,4 +1,4 @@
-//! What the summary of a run says of a plant: where its energy went, and what
+//! A plant in the summary of a run: where its energy went, and what
 //! the rendered torque did.
 
 use crate::sections::{millijoule, nm, section};
@@ -59,7 +59,7 @@ pub(super) fn balance(s: &Summary) -> Option<Balance> {
     })
 }
 
-/// Where the work of the rendered torque comes from, in words. None if there
+/// Sources of the work of the rendered torque, in words. None if there
 /// is nothing to render.
 pub(super) fn rendered_section(s: &Summary) -> Option<Section> {
     let rendering = &s.plant_energy.as_ref()?.rendering;

@@ -9,7 +9,7 @@ use crepitus_scene::Summary;
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_scene::run::{AddedTime, EffectSummary};
 
-/// What happened, in a few lines.
+/// Summary of the run in a few lines.
 pub(super) fn in_brief(s: &Summary) -> String {
     let mut lines = Vec::new();
     if let Some(e) = &s.events {

@@ -22,7 +22,7 @@ pub(super) struct Watch {
     rows: u64,
 }
 
-/// Why a run ends early.
+/// Reason for the early end of a run.
 #[derive(Debug)]
 pub(super) enum WatchError {
     /// The results cannot be written.

@@ -12,7 +12,7 @@ pub(super) fn check(_: &str) -> Result<(), Failure> {
     ))
 }
 
-/// As [`check`].
+/// Returns the error of [`check`].
 pub(super) fn serve(_: &mut dyn CabledDevice, _: &str, name: &str, _: bool) -> Result<(), Failure> {
     check(name)
 }

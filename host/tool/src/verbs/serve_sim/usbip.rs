@@ -92,7 +92,7 @@ fn attach(address: SocketAddr) -> String {
     format!("usbip{port} attach -r {host} -b {}", Server::BUS_ID)
 }
 
-/// Who has the device, on stderr.
+/// Logs to stderr when a client imports or releases the device, or is refused.
 fn log(event: &Event) {
     let text = match event {
         Event::Imported { client } => format!("{client} has imported the device"),

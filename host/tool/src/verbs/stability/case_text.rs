@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 /// Columns of a terminal that text fills.
 const WIDTH: usize = 100;
-/// Where it begins.
+/// Indentation of the text, columns.
 const INDENT: usize = 16;
 
 /// The case in words, then all its cells, each with the trial and the

@@ -1,4 +1,4 @@
-//! Which cases and which subjects the command line asks for.
+//! Cases and subjects that the command line asks for.
 
 use super::Arguments;
 use crate::failure::Failure;

@@ -14,13 +14,13 @@ pub(super) struct Summary<'m> {
     #[serde(rename = "summary_version")]
     version: u32,
     pub(super) crepitus_version: &'static str,
-    /// What it was run on.
+    /// Computer on which the matrix was run.
     host: String,
     /// Whether cases of hours of simulated time were among them.
     pub(super) long: bool,
     pub(super) subjects: usize,
     pub(super) cells: usize,
-    /// Of all cells.
+    /// Counts of all cells.
     pub(super) counts: Counts,
     pub(super) cases: Vec<CaseSummary<'m>>,
     /// The cells that must hold and do not.
@@ -29,7 +29,7 @@ pub(super) struct Summary<'m> {
     pub(super) wall_s: f64,
 }
 
-/// How many cells stand how.
+/// Numbers of cells: by verdict, those that must hold, and those that must hold and do not.
 #[derive(Clone, Copy, Default, Serialize)]
 pub(super) struct Counts {
     pub(super) holds: usize,
@@ -46,7 +46,7 @@ pub(super) struct CaseSummary<'m> {
     name: &'static str,
     pub(super) title: &'static str,
     pub(super) counts: Counts,
-    /// Of the cells that must hold, and do, the one nearest to its limit.
+    /// Cell nearest to its limit, of those that must hold, and do.
     #[serde(serialize_with = "as_row")]
     pub(super) narrowest: Option<CaseCell<'m>>,
 }

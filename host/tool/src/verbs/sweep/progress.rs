@@ -5,7 +5,7 @@ use crate::progress;
 use crepitus_sweep::{Ended, Receiver, Row, Store, StoreError};
 use std::io;
 
-/// Why a sweep ends early.
+/// Reason for the early end of a sweep.
 #[derive(Debug)]
 pub(super) enum End {
     /// Ctrl-C.

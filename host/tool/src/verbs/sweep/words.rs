@@ -2,7 +2,7 @@
 
 use super::Ran;
 
-/// How many runs in what time.
+/// Number of runs, and the time that they took.
 pub(super) fn ran(runs: u64, ran: &Ran) -> String {
     let threads = match ran.threads {
         1 => "one thread".to_owned(),

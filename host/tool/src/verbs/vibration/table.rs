@@ -1,4 +1,4 @@
-//! What the hand gets as tables for the terminal.
+//! Vibration that the hand gets, as tables for the terminal.
 
 use crepitus_study::vibration::{AtSpeed, VibrationStudy, tables};
 

@@ -6,7 +6,7 @@ use crepitus_study::accuracy::answer::{Answer, Candidate, Cycles};
 use crepitus_study::limits::Limited;
 use std::fmt::Write;
 
-/// What to use on the target, and what else would do.
+/// Recommendation for the target, and what else would do.
 pub(super) fn recommended(chosen: &Candidate, cost: &Cycles, answer: &Answer) -> String {
     let mut text = format!(
         "Use {} ({} Hz). It costs {} (on {}): {:.1} % of a tick.\n",
@@ -40,7 +40,7 @@ pub(super) fn recommended(chosen: &Candidate, cost: &Cycles, answer: &Answer) ->
     text
 }
 
-/// What fails on the target, and why.
+/// Appends what fails on the target, and why.
 pub(super) fn failed(text: &mut String, failed: &[Candidate]) {
     if failed.is_empty() {
         text.push_str("No rung fails.\n");
