@@ -359,7 +359,7 @@ fn a_scene_without_events_is_studied_too() {
     }
 }
 
-/// Whether the image for the target could not be built here; a line about it,
+/// Returns whether the image for the target could not be built here; a line about it,
 /// or a failure where it must be.
 fn has_no_target(output: &Output) -> bool {
     let printed = stderr(output);

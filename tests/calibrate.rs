@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use support::{WEIGHT_IN_THE_BRACE, names, refuses, run, stderr, stdout};
 
-/// What hangs on the arm of the scene `weight-on-the-arm`.
+/// Arguments for the weight that hangs on the arm of the scene `weight-on-the-arm`.
 const WEIGHT: [&str; 4] = ["--weight-kg", "0.61", "--lever-m", "0.25"];
 
 const ARM: [&str; 5] = ["--yes", "--device", "sim", "--scene", "weight-on-the-arm"];

@@ -214,19 +214,31 @@ fn folder_of(package: &str) -> Option<PathBuf> {
         })
 }
 
-/// All sources below a folder or of a file.
-fn sources(path: &Path, all: &mut String) {
+/// Collects the Rust sources below a folder, but for builds, or the file itself.
+fn rust_files(path: &Path, found: &mut Vec<PathBuf>) {
+    if path.is_dir() && path.ends_with("target") && path.join("CACHEDIR.TAG").is_file() {
+        return;
+    }
     if path.is_dir() {
         for entry in fs::read_dir(path).unwrap() {
-            sources(&entry.unwrap().path(), all);
+            rust_files(&entry.unwrap().path(), found);
         }
     } else if path.is_file() && path.extension().is_some_and(|e| e == "rs") {
-        all.push_str(&path.to_string_lossy());
-        all.push_str(&fs::read_to_string(path).unwrap());
+        found.push(path.to_owned());
     }
 }
 
-/// Why `cargo test -p PACKAGE [--lib | --test NAME] [FILTER]` would run nothing.
+/// Appends all sources below a folder or of a file.
+fn sources(path: &Path, all: &mut String) {
+    let mut files = Vec::new();
+    rust_files(path, &mut files);
+    for file in files {
+        all.push_str(&file.to_string_lossy());
+        all.push_str(&fs::read_to_string(file).unwrap());
+    }
+}
+
+/// Reason why `cargo test -p PACKAGE [--lib | --test NAME] [FILTER]` would run nothing.
 fn runs_nothing(command: &str) -> Option<String> {
     let mut words = command.strip_prefix("cargo test -p ")?.split(' ');
     let Some(folder) = words.next().and_then(folder_of) else {
@@ -324,4 +336,39 @@ fn what_runs_where_names_tests_that_exist() {
             assert_eq!(runs_nothing(command), None);
         }
     }
+}
+
+/// First words of a clause, which a doc comment does not begin with.
+const CLAUSES: [&str; 7] = ["What", "Whatever", "Who", "Whoever", "How", "Where", "Why"];
+
+/// The text of a line that is a doc comment.
+fn doc_text(line: &str) -> Option<&str> {
+    let line = line.trim_start();
+    line.strip_prefix("///")
+        .or_else(|| line.strip_prefix("//!"))
+}
+
+#[test]
+fn doc_comments_begin_with_a_noun_phrase_or_a_verb() {
+    let mut files = Vec::new();
+    rust_files(&repository(), &mut files);
+    assert!(files.len() > 1_000, "{} files", files.len());
+    let (mut read, mut wrong) = (0, Vec::new());
+    for file in files {
+        let text = fs::read_to_string(&file).unwrap();
+        let mut is_first = true;
+        for (number, line) in (1..).zip(text.lines()) {
+            let doc = doc_text(line);
+            if let Some(doc) = doc.filter(|_| is_first) {
+                read += 1;
+                let word = doc.split_whitespace().next().unwrap_or_default();
+                if CLAUSES.contains(&word.trim_end_matches(['.', ',', ':'])) {
+                    wrong.push(format!("{}:{number}:{doc}", file.display()));
+                }
+            }
+            is_first = doc.is_none();
+        }
+    }
+    assert!(read > 5_000, "{read} doc comments");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

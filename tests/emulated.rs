@@ -17,7 +17,7 @@ fn emulated(arguments: &[&str]) -> Output {
     run(&all)
 }
 
-/// Whether there is an emulator, and a target to build the images for.
+/// Returns whether there is an emulator, and a target to build the images for.
 fn is_there() -> bool {
     let output = emulated(&["info", "--json"]);
     let message = stderr(&output);

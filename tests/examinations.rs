@@ -34,14 +34,14 @@ const OF_MUSCLES: [Examination; 6] = [
     ("catch-and-clonus", 4.5),
 ];
 
-/// Before V3, 350 °/s, at which a device lets go.
+/// Time that ends before V3, s: at V3, 350 °/s, a device lets go.
 const BEFORE_V3_S: f64 = 6.7;
 
 fn scene(name: &str) -> Scene {
     shipped::scene(Path::new(name), &Overrides::default()).unwrap()
 }
 
-/// Until the motion begins, s: arming, and a stroke of at most 30 °/s from 0°.
+/// Time until the motion begins, s: arming, and a stroke of at most 30 °/s from 0°.
 fn led_s(scene: &Scene) -> f64 {
     0.2 + 1.875 * scene.start().angle_rad.to_degrees() / 30.0
 }

@@ -1,5 +1,5 @@
-//! What others do not do: a program that passes samples on hangs, nobody reads what is written, a device is gone and
-//! its name is another's. Each a process of its own.
+//! Failures of others: a program that passes samples on hangs, nobody reads what is written, a device is gone
+//! and its name is another's. Each a process of its own.
 #![cfg(target_os = "linux")]
 
 mod support;
@@ -78,7 +78,7 @@ fn a_recording_whose_last_samples_a_hanging_program_has_is_not_complete() {
     assert!(!recording(&path).is_complete());
 }
 
-/// As a pager does whose user has gone, or a terminal that was stopped by Ctrl-S.
+/// Stalled reader, as a pager whose user has gone, or a terminal that was stopped by Ctrl-S.
 #[test]
 fn a_program_that_nobody_reads_obeys_signals() {
     let served = Served::new();
@@ -139,7 +139,7 @@ fn another_terminal_of_the_same_number_is_no_device() {
     ended(&mut recorder);
 }
 
-/// With a full disk, or a file where the folder should be.
+/// Stop with a full disk, or with a file where the folder should be.
 #[test]
 fn a_stop_needs_no_folder() {
     let served = Served::new();

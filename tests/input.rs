@@ -188,7 +188,7 @@ fn no_input_forges_a_line() {
     }
 }
 
-/// What a rule says must be said as one: the value broke it.
+/// A rule must be stated as one: the value broke it.
 #[test]
 fn a_rule_is_not_told_as_a_fact() {
     let printed = refused(&run(&[

@@ -16,7 +16,7 @@ use support::{names, run, stderr};
 
 const SIM: [&str; 2] = ["--device", "sim"];
 
-/// It is closed, and was told why and nothing else.
+/// Checks that the page is closed and has received the reason and nothing else.
 fn is_refused(page: &mut Page) {
     page.until("its close", |page| page.is_closed);
     assert_eq!(page.latest["refused"], "wrong-token");
@@ -29,7 +29,7 @@ fn only_a_link_opens_it() {
     for wrong in ["", "0123456789abcdef0123456789abcdef", &panel.teacher] {
         is_refused(&mut Page::open(&panel.host, Some(wrong)));
     }
-    // Who says nothing is disconnected.
+    // A page that says nothing is disconnected.
     is_refused(&mut Page::open(&panel.host, None));
     let mut viewer = panel.viewer_page();
     assert_eq!(viewer.latest["hello"]["role"], "viewer");
@@ -141,7 +141,7 @@ fn until_off(viewer: &mut Page) -> Duration {
     begun.elapsed()
 }
 
-/// Whether torque ended because no answer came, and not because the page was gone.
+/// Returns whether torque ended because no answer came, and not because the page was gone.
 fn by_watchdog(viewer: &Page) -> bool {
     let why = viewer.status("message").as_str().unwrap_or_default();
     why.contains("has not answered for 200 ms")

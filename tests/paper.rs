@@ -1,4 +1,4 @@
-//! What a paper takes from a run: pictures at a column's width, measured curves over computed ones,
+//! Output of a run for a paper: pictures at a column's width, measured curves over computed ones,
 //! sound.
 
 mod support;

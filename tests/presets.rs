@@ -165,7 +165,7 @@ fn slow_stretch_nm(preset: &Preset, folder: &Path) -> f64 {
     summary(&out)["hand_torque"]["max_nm"].as_f64().unwrap()
 }
 
-/// In English, and in the panel's German.
+/// Texts in English, and in the panel's German.
 #[test]
 fn a_preset_of_spasticity_says_what_a_slow_stretch_meets() {
     let home = tempfile::tempdir().unwrap();
@@ -501,7 +501,7 @@ All other parameters are at their defaults: `crepitus effects` lists them.
     assert!(stderr(&run(&["presets", "mas-0-catch"])).contains("MAS 0"));
 }
 
-/// Without a variable of its own, the user's configuration.
+/// Folder of the presets without a variable of its own: the user's configuration.
 #[test]
 fn the_folder_is_the_users_configuration() {
     let home = tempfile::tempdir().unwrap();

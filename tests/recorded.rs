@@ -109,7 +109,7 @@ fn a_report_replaces_nothing_but_its_own() {
     assert_eq!(report(&a).status.code(), Some(2));
 }
 
-/// Of either format, also where only the end of the work tells the name.
+/// Recordings of either format, also where only the end of the work tells the name.
 #[test]
 fn results_replace_no_recording() {
     let home = tempfile::tempdir().unwrap();
@@ -165,7 +165,7 @@ fn a_refused_recording_leaves_nothing() {
     );
 }
 
-/// Nothing is said to be whole that nobody can read.
+/// A recording that nobody can read is not reported as whole.
 #[test]
 fn a_recording_that_was_removed_while_it_ran_is_no_success() {
     let home = tempfile::tempdir().unwrap();
@@ -383,7 +383,7 @@ fn a_disk_that_gets_full_at_the_end_costs_nothing() {
     assert!(recording(&log).is_complete());
 }
 
-/// With the libraries of `CREPITUS_PYTHON`, or of the usual Python. What is not installed is left
+/// Uses the libraries of `CREPITUS_PYTHON`, or of the usual Python. What is not installed is left
 /// out, unless `CREPITUS_NEEDS_PYTHON` is set.
 #[test]
 fn pandas_polars_and_duckdb_open_the_file() {

@@ -374,7 +374,7 @@ fn pictures_are_svg_or_pdf() {
     );
 }
 
-/// Told before the run, and as bad input.
+/// Reported before the run, and as bad input.
 #[test]
 fn places_where_nothing_can_be_are_bad_input() {
     let home = tempfile::tempdir().unwrap();

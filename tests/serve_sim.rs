@@ -45,7 +45,7 @@ fn it_is_found_and_talks() {
     assert!(got.contains("0.45"), "{got}");
 }
 
-/// By one that does not share it: it is not this user's.
+/// Process that does not share the port: it is not this user's.
 #[test]
 fn a_port_held_by_another_process_is_reported() {
     let served = Served::new();
@@ -144,7 +144,7 @@ fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
     assert!(check_books(&recording(&file)).received > 9_000);
 }
 
-/// As when the cable is pulled and the device restarts.
+/// Loss and return of the device, as when the cable is pulled and the device restarts.
 #[test]
 fn a_recording_goes_on_when_the_device_comes_back() {
     let served = Served::new();

@@ -23,7 +23,7 @@ const GRID: [&str; 6] = [
     "duration_s=0.5",
 ];
 
-/// So many short runs that on any computer a part is written before the last of them: after
+/// Sweep of so many short runs that on any computer a part is written before the last of them: after
 /// 8192 rows, or two seconds.
 const MANY: [&str; 11] = [
     "low-speed",
@@ -60,7 +60,7 @@ fn refused(home: &Path, arguments: &[&str], code: i32) -> String {
     stderr(&output)
 }
 
-/// How many parts a folder has; one that is being written has a name with a dot before it.
+/// Number of whole parts in a folder; one that is being written has a name with a dot before it.
 fn whole_parts(folder: &Path) -> usize {
     let names = names(&folder.join("parts"));
     names.iter().filter(|name| !name.starts_with('.')).count()

@@ -1,4 +1,4 @@
-//! What needs a person at a terminal: `crepitus monitor`, and the steps of `crepitus calibrate`.
+//! Commands that need a person at a terminal: `crepitus monitor`, and the steps of `crepitus calibrate`.
 #![cfg(target_os = "linux")]
 
 mod support;

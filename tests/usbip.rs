@@ -21,7 +21,7 @@ use std::time::{Duration, Instant};
 use support::served::signal;
 use support::{crepitus, stderr, stdout};
 
-/// How long anything may take that a computer under load does late.
+/// Timeout of anything that a computer under load does late.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// URBs that a serial driver keeps pending, and the buffer of each: as Linux's.
@@ -95,7 +95,7 @@ fn until<T>(client: &mut UsbIp, mut what: impl FnMut(&mut UsbIp) -> Option<T>) -
     }
 }
 
-/// What a serial driver does, over USB/IP.
+/// A serial driver, over USB/IP.
 struct Driver {
     urbs: UsbIp,
     received: VecDeque<u8>,

@@ -130,7 +130,7 @@ fn programs_with_different_environments_meet() {
     assert!(!ended(&mut arm).success());
 }
 
-/// As an ordinary user: root may open what nobody else may.
+/// Runs the programs as an ordinary user: root may open what nobody else may.
 #[test]
 fn the_others_go_on_when_the_first_program_of_a_user_is_killed() {
     const NOBODY: u32 = 65_534;
@@ -275,7 +275,7 @@ fn streaming(served: &Served) -> (Child, Lines<BufReader<ChildStdout>>) {
     (child, rows)
 }
 
-/// What a program has subscribed to with one that served before ends with it, too.
+/// A program's subscription with one that served before ends with that program, too.
 #[test]
 fn the_next_one_that_serves_knows_what_was_subscribed_before() {
     let served = Served::new();
@@ -313,8 +313,8 @@ fn the_next_one_that_serves_knows_what_was_subscribed_before() {
     assert_eq!(sent(), before, "samples are sent to nobody");
 }
 
-/// What the program that serves has left open when it is killed, the next one ends: the others
-/// were told of it.
+/// The next program that serves ends what the killed one has left open: that was reported to the
+/// others.
 #[test]
 fn the_next_one_that_serves_ends_what_the_killed_one_has_left_open() {
     let served = Served::new();
@@ -342,7 +342,7 @@ fn the_next_one_that_serves_ends_what_the_killed_one_has_left_open() {
     assert!(armed.wait_with_output().unwrap().status.success());
 }
 
-/// A program that serves and is stopped, as by Ctrl-Z: the others are told, and
+/// A program that serves and is stopped, as by Ctrl-Z: it is reported to the others, and
 /// torque has ended.
 #[test]
 fn a_program_that_serves_and_hangs_is_named() {
@@ -370,7 +370,7 @@ fn a_program_that_serves_and_hangs_is_named() {
     assert!(info["faults"][0].as_str().unwrap().contains("lease"));
 }
 
-/// As when the system removes the runtime folder of a user who logs out.
+/// Removed sockets, as when the system removes the runtime folder of a user who logs out.
 #[test]
 fn a_program_whose_socket_was_removed_is_found_again_and_ends_in_order() {
     let served = Served::new();

@@ -168,7 +168,7 @@ pub(crate) fn table(file: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     (header, rows.collect())
 }
 
-/// Whether a JSON object has the names and values of a row of a CSV file.
+/// Returns whether a JSON object has the names and values of a row of a CSV file.
 pub(crate) fn is_row(object: &Value, header: &[String], row: &[String]) -> bool {
     header
         .iter()

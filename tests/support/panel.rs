@@ -25,12 +25,12 @@ pub(crate) struct Panel {
 }
 
 impl Panel {
-    /// With these arguments, and a home folder of its own.
+    /// Starts the panel with these arguments, and a home folder of its own.
     pub(crate) fn new(arguments: &[&str]) -> Self {
         Self::at(arguments, None)
     }
 
-    /// In the run-time folder of a simulated device.
+    /// Starts the panel in the run-time folder of a simulated device.
     pub(crate) fn at(arguments: &[&str], runtime: Option<&Path>) -> Self {
         let home = tempfile::tempdir().unwrap();
         let mut command = crepitus();
@@ -76,7 +76,7 @@ impl Panel {
         self.page(&self.viewer)
     }
 
-    /// A page of a link that was told all that there is.
+    /// A page of a link that has received all that there is.
     fn page(&self, link: &str) -> Page {
         let (_, token) = link.split_once('#').unwrap();
         let mut page = Page::open(&self.host, Some(token));

@@ -19,12 +19,12 @@ impl Served {
         Self::at(tempfile::tempdir().unwrap())
     }
 
-    /// In a folder that is there.
+    /// Serves in a folder that is there.
     pub(crate) fn at(home: tempfile::TempDir) -> Self {
         Self::of(home, &[])
     }
 
-    /// With the leg and the parameters of a scene.
+    /// Serves a device with the leg and the parameters of a scene.
     pub(crate) fn with_scene(scene: &str) -> Self {
         Self::of(tempfile::tempdir().unwrap(), &["--scene", scene])
     }

@@ -1,4 +1,4 @@
-//! Who takes part, with which settings, and the rounds in which all take turns.
+//! Contestants, their settings, and the rounds in which all take turns.
 
 use crate::measure::{Score, Summary, repeats, score, summarise, time};
 use crate::ours;
@@ -15,11 +15,11 @@ pub struct Contestant {
     /// Its description.
     pub who: Who,
     runner: Runner,
-    /// What it did, by task in the order of [`Task::ALL`]; none where it has no answer.
+    /// Its results, by task in the order of [`Task::ALL`]; none where it has no answer.
     pub results: [Option<TaskResult>; 3],
 }
 
-/// What a contestant is called.
+/// Description of a contestant.
 #[derive(Clone, Debug, Serialize)]
 pub struct Who {
     /// Library and version, or `crepitus`.
@@ -33,18 +33,18 @@ pub struct Who {
 }
 
 impl Who {
-    /// Whether it is one of our own.
+    /// Returns whether it is one of our own.
     pub fn is_ours(&self) -> bool {
         self.setting.is_none()
     }
 }
 
-/// What came of one task.
+/// Result of one task.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct TaskResult {
-    /// How good.
+    /// Its errors against the closed form.
     pub score: Score,
-    /// How fast.
+    /// Its times over all rounds.
     pub time: Summary,
 }
 
@@ -84,7 +84,7 @@ pub fn line_up(out: &mut Delivery) -> Vec<Contestant> {
                 limited: false,
             };
             settings.push((free, Vec::new()));
-            // Whoever misses events is also shown with what it takes to find them.
+            // A peer that misses events is also shown with what it takes to find them.
             if attempt(&peer, free, out).is_none_or(|s| s.event_error_s.is_none()) {
                 let limited = Setting {
                     limited: true,
@@ -121,11 +121,11 @@ fn attempt(peer: &Peer, setting: Setting, out: &mut Delivery) -> Option<Score> {
     score(&mut peer.build(setting).ok()?, Task::Events, out).ok()
 }
 
-/// For each task the cheapest setting with every event within [`EVENT_LIMIT_S`]: tolerances from
+/// Finds for each task the cheapest setting with every event within [`EVENT_LIMIT_S`]: tolerances from
 /// 1e-4 to 1e-13 in half decades, slips limited or not. A setting that finds all events by luck
 /// of its steps is as good as any.
 fn tune(peer: &Peer, out: &mut Delivery) -> Vec<(Task, Setting)> {
-    /// How many of the cheapest are timed again for each task.
+    /// Number of the cheapest settings that are timed again for each task.
     const SHORT_LIST: usize = 5;
     let mut good = Vec::new();
     for limited in [false, true] {
@@ -157,7 +157,7 @@ fn tune(peer: &Peer, out: &mut Delivery) -> Vec<(Task, Setting)> {
         .collect()
 }
 
-/// What a setting costs, s. A limit that changes nothing should not be chosen for noise.
+/// Cost of a setting, s. A limit that changes nothing should not be chosen for noise.
 fn cost(setting: Setting, runner: &mut Runner, task: Task, out: &mut Delivery) -> f64 {
     cheapest(runner, task, out) * if setting.limited { 1.02 } else { 1.0 }
 }

@@ -2,7 +2,7 @@
 //!
 //! The clock is the CPU time of the thread. On a quiet machine it is the wall time; on a busy one
 //! the wall time of a long run holds time slices of others and that of a short run does not, which
-//! would flatter whoever is fast. Both are kept.
+//! would flatter the fast contestants. Both are kept.
 
 use crate::work::{Delivery, Runner, SAMPLES, Task, Work, sample_s};
 use crepitus_scene::cpu_time;
@@ -13,7 +13,7 @@ use std::time::Instant;
 /// A turn lasts at least this long, s: short work is repeated within it.
 const TURN_S: f64 = 1e-3;
 
-/// How good a delivery is.
+/// Accuracy of a delivery.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Score {
     /// Number of events delivered.
@@ -28,7 +28,7 @@ pub struct Score {
 }
 
 impl Score {
-    /// Whether all events are there, each within `limit_s`.
+    /// Returns whether all events are there, each within `limit_s`.
     pub fn reaches(&self, limit_s: f64) -> bool {
         self.event_error_s.is_some_and(|e| e <= limit_s)
     }
@@ -37,7 +37,7 @@ impl Score {
 /// Does the work once and scores it.
 ///
 /// # Errors
-/// What the solver says when it gives up.
+/// The solver's message if it gives up.
 pub fn score(runner: &mut Runner, task: Task, out: &mut Delivery) -> Result<Score, String> {
     let work = Work::new();
     out.wipe();
@@ -74,7 +74,7 @@ pub fn time(runner: &mut Runner, task: Task, out: &mut Delivery, repeats: u32) -
     }
 }
 
-/// How often a run is repeated to fill a turn.
+/// Number of times that a run is repeated to fill a turn.
 pub fn repeats(runner: &mut Runner, task: Task, out: &mut Delivery) -> u32 {
     let mut repeats = 1;
     while time(runner, task, out, repeats).cpu_s * f64::from(repeats) < TURN_S && repeats < 1 << 20

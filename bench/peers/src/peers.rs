@@ -21,7 +21,7 @@ pub struct Peer {
     build: fn(Setting) -> Result<Runner, String>,
 }
 
-/// How a method is set.
+/// Settings of a method.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Setting {
     /// Relative tolerance, and absolute, both components being of order one.

@@ -1,4 +1,4 @@
-//! What rows of output cost the reference: events' cost + rows' cost.
+//! Cost of rows of output to the reference: events' cost + rows' cost.
 //!
 //! A solver that searches again from each row for the next event pays for the rows in events.
 
@@ -16,9 +16,9 @@ const SPACINGS_S: [f64; 5] = [1.0, 1e-1, 1e-2, 1e-3, 1e-4];
 const COARSE_S: f64 = 1e-1;
 /// Times that the events may take with coarse rows, of their time without.
 const COARSE_RATIO: f64 = 1.3;
-/// From this spacing down the rows cost more than the scatter of the events' time, s.
+/// Spacing from which down the rows cost more than the scatter of the events' time, s.
 const FINE_S: f64 = 1e-3;
-/// How much the times of a row may differ.
+/// Largest allowed ratio between the times of a row.
 const ROW_RATIO: f64 = 2.0;
 
 /// The costs on one motion under one convention.
@@ -79,7 +79,7 @@ impl Rows {
         (spacing.total_s - self.events_s) / spacing.rows as f64
     }
 
-    /// What does not hold, in words.
+    /// Requirements that do not hold, in words.
     pub fn failures(&self) -> Vec<String> {
         let mut failures = Vec::new();
         for s in self.spacings.iter().filter(|s| s.spacing_s >= COARSE_S) {

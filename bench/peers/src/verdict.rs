@@ -1,12 +1,12 @@
-//! What the comparison comes to: the ratios, and whether they are what is asked for.
+//! Result of the comparison: the ratios, and whether they are what is asked for.
 
 use crate::contest::{Contestant, EVENT_LIMIT_S, Who};
 use crate::work::Task;
 use serde::Serialize;
 
-/// How many times faster with all samples.
+/// Required speed-up with all samples.
 const SAMPLES_RATIO: f64 = 5.0;
-/// How many times faster with the events only.
+/// Required speed-up with the events only.
 const EVENTS_RATIO: f64 = 500.0;
 /// Faster at all.
 const AHEAD: f64 = 1.0;
@@ -26,12 +26,12 @@ pub struct Ratio {
     pub cpu: f64,
     /// Wall time of the peer over ours.
     pub wall: f64,
-    /// What is asked for, where something is.
+    /// Required value of `cpu`, where there is one.
     pub required: Option<f64>,
 }
 
 impl Ratio {
-    /// Whether it is what is asked for.
+    /// Returns whether it is what is asked for.
     pub fn holds(&self) -> bool {
         self.required.is_none_or(|r| self.cpu >= r)
     }
@@ -74,7 +74,7 @@ pub fn ratios(contestants: &[Contestant]) -> Vec<Ratio> {
     ratios
 }
 
-/// What does not hold, in words; empty if all does.
+/// Requirements that do not hold, in words; empty if all do.
 pub fn failures(contestants: &[Contestant], ratios: &[Ratio]) -> Vec<String> {
     let mut failures = Vec::new();
     for ours in contestants.iter().filter(|c| c.who.is_ours()) {

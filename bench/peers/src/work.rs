@@ -24,14 +24,14 @@ pub const KINETIC: f64 = 0.2;
 pub const STATIC: f64 = 0.4;
 /// Ω, rad/s.
 pub const OMEGA: f64 = 1.0;
-/// How long, s.
+/// Duration of the run, s.
 pub const DURATION_S: f64 = 10.0;
 /// Samples a second: every 50 µs.
 pub const RATE_HZ: f64 = 20_000.0;
 /// Number of samples; the first is at 50 µs, the last at the end.
 pub const SAMPLES: usize = 200_000;
 
-/// What is asked for.
+/// Output that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Task {
@@ -135,7 +135,7 @@ impl Work {
         }
     }
 
-    /// The torque shown, N·m. Whoever asks has the state at that time: without the black box the
+    /// The torque shown, N·m. The caller has the state at that time: without the black box the
     /// compiler sees that a slip does not need it, and drops the interpolation.
     #[inline]
     pub fn torque(&self, mode: Mode, y: &[f64]) -> f64 {
@@ -210,7 +210,7 @@ pub fn sample_s(n: usize) -> f64 {
     (n + 1) as f64 * STEP_S
 }
 
-/// Where a contestant puts what it was asked for. Made once: nobody pays for its memory.
+/// Output of a contestant. Made once: nobody pays for its memory.
 #[derive(Clone, Debug)]
 pub struct Delivery {
     /// Times of the events in their order, s.
@@ -279,7 +279,7 @@ impl<'a> Sampler<'a> {
 /// One solver with its settings, set up and ready to do the work again and again.
 ///
 /// # Errors
-/// What the solver says when it gives up.
+/// The solver's message if it gives up.
 pub type Runner = Box<dyn FnMut(Task, &mut Delivery) -> Result<(), String>>;
 
 #[cfg(test)]

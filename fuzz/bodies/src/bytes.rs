@@ -66,17 +66,17 @@ impl<'a> Bytes<'a> {
         choices[usize::from(self.byte()) % choices.len()]
     }
 
-    /// From −1 to 1.
+    /// Returns a number from −1 to 1.
     pub(crate) fn signed(&mut self) -> f64 {
         f64::from(i16::from_le_bytes(self.take())) / 32768.0
     }
 
-    /// From 0 to 1, both included.
+    /// Returns a number from 0 to 1, both included.
     pub(crate) fn part(&mut self) -> f64 {
         f64::from(self.byte()) / 255.0
     }
 
-    /// From `min` to `max`, both to the bit, and in between by even factors.
+    /// Returns a number from `min` to `max`, both to the bit, and in between by even factors.
     /// Where `min` is 0 the factors begin at `max`·1e−15.
     pub(crate) fn between(&mut self, min: f64, max: f64) -> f64 {
         match u16::from_le_bytes(self.take()) {

@@ -54,7 +54,7 @@ const NUMBERS: [u32; SESSIONS.len()] = [0, 0x7ffe, 0xfffe];
 /// Checks the laws.
 ///
 /// # Panics
-/// Where one is broken.
+/// If one is broken.
 pub fn body(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     let saved = (bytes.byte() > 127).then(|| {
@@ -93,7 +93,7 @@ struct Chain {
     /// Bytes that the host reads in a millisecond.
     reads: usize,
     lease: LeaseOracle,
-    /// When torque was requested to end last.
+    /// Tick at which the end of torque was requested last.
     stopped: u64,
     values: KnownValues,
     /// Commits that were sent to this start of comms, until they are answered.

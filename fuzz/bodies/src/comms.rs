@@ -52,7 +52,7 @@ const MOST_SESSIONS: u32 = 32;
 /// Checks the laws.
 ///
 /// # Panics
-/// Where one is broken.
+/// If one is broken.
 pub fn body(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     let reset = bytes.choice(&ResetCause::ALL);
@@ -105,7 +105,7 @@ struct Bench {
     /// The last byte from hosts was no delimiter.
     is_in_frame: bool,
     numbers: [u32; 5],
-    /// When a block came last.
+    /// Time of the last block, ms.
     block_ms: Option<u64>,
     lease: LeaseOracle,
     /// The tick at which the lease ends, at most; none, if the drive's ticks

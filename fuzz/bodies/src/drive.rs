@@ -55,7 +55,7 @@ pub(crate) const HEAD_BYTES: usize = 5;
 /// Checks the laws.
 ///
 /// # Panics
-/// Where one is broken.
+/// If one is broken.
 pub fn body(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     let reset = bytes.choice(&ResetCause::ALL);
@@ -105,13 +105,13 @@ struct Bench {
     astray: u32,
     /// Decoder of the bytes from the drive.
     host: Decoder,
-    /// How it was in the last runs of the link's task.
+    /// Next tick, state and revision of the drive in the last runs of the link's task.
     states: VecDeque<(u64, State, Revision)>,
-    /// Comms has told of another start than 0.
+    /// Comms has reported a start other than 0.
     has_restarted: bool,
     received: u64,
     first_tick: u64,
-    /// In which ticks there was torque.
+    /// Whether there was torque, for each tick since `first_tick`.
     energised: Vec<bool>,
     sequence: u16,
     /// Words of its record of a crash.
@@ -550,7 +550,7 @@ impl Bench {
     }
 }
 
-/// What a block says was dropped; its torque is held to its law on the way.
+/// Number of dropped samples that a block reports; its torque is held to its law on the way.
 fn block_dropped(block: &Block) -> u32 {
     for sample in &block.samples {
         let is_energised = sample.flags.has(SampleFlags::ENERGISED);

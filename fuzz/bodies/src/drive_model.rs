@@ -96,7 +96,7 @@ impl DriveModel {
         }
     }
 
-    /// Whether the last block shows an overcurrent while armed or arming. A stale block does not
+    /// Returns whether the last block shows an overcurrent while armed or arming. A stale block does not
     /// count: after an unseen restart comms ignores it.
     pub(crate) fn shows_overcurrent(&self) -> bool {
         self.blocks.back().is_some_and(|block| {
@@ -106,12 +106,12 @@ impl DriveModel {
         })
     }
 
-    /// Whether it has rejected a commit since the last call.
+    /// Returns whether it has rejected a commit since the last call.
     pub(crate) fn has_rejected(&mut self) -> bool {
         std::mem::take(&mut self.has_rejected)
     }
 
-    /// Whether a status has reported the revision just before this one.
+    /// Returns whether a status has reported the revision just before this one.
     pub(crate) fn has_reported_before(&self, revision: Revision) -> bool {
         let before = |reported: &u32| Revision(*reported).next() == revision;
         self.revisions.iter().any(before)

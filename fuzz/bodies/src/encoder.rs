@@ -14,7 +14,7 @@ use crepitus_model::parameters::Tabled;
 /// Checks the laws.
 ///
 /// # Panics
-/// Where one is broken.
+/// If one is broken.
 pub fn body(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     if bytes.byte().is_multiple_of(2) {

@@ -45,7 +45,7 @@ static GOLDEN: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
 /// Checks the laws.
 ///
 /// # Panics
-/// Where one is broken.
+/// If one is broken.
 pub fn body(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     let golden = &GOLDEN[usize::from(bytes.byte()) % GOLDEN.len()];
@@ -89,7 +89,7 @@ fn stream(noise: &[u8], golden: &[u8]) {
     assert_eq!(decoder.discarded(), discarded);
 }
 
-/// Whether the frame holds that body and a valid CRC, by an independent decoder.
+/// Returns whether the frame holds that body and a valid CRC, by an independent decoder.
 fn has_valid_crc(run: &[u8], body: &Body<'_>) -> bool {
     let mut plain = Vec::new();
     let mut rest = run;

@@ -1,4 +1,4 @@
-//! What comms sends to hosts.
+//! Frames and messages from comms to hosts.
 
 use crepitus_protocol::frame::DELIMITER;
 use crepitus_protocol::host::Reply;
@@ -34,7 +34,7 @@ impl Frames {
     }
 }
 
-/// Whether a frame is a block: its lane, after the first code of COBS.
+/// Returns whether a frame is a block: its lane, after the first code of COBS.
 pub(crate) fn is_block(frame: &[u8]) -> bool {
     frame.get(1) == Some(&Lane::Telemetry.byte())
 }

@@ -24,7 +24,7 @@ pub(crate) const MOST_EVENTS: usize = EVENTS_PER_STEP * (CATCH_UP_TICKS as usize
 /// Checks the laws.
 ///
 /// # Panics
-/// Where one is broken.
+/// If one is broken.
 pub fn body(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     let rung = Rung::of(&mut bytes);
@@ -56,7 +56,7 @@ pub(crate) fn next_samples(
     }
 }
 
-/// As the joint's input.
+/// Returns `step` as the joint's input.
 pub(crate) fn sample<F: Real>(step: Option<&ShaftStep<f64>>) -> Sample<F> {
     step.map_or(Sample::Lost, |s| {
         Sample::Taken(ShaftStep {

@@ -19,18 +19,18 @@ struct SampleAccounting {
 /// A host that receives all replies.
 #[derive(Default)]
 pub(crate) struct HostOracle {
-    /// How many replies may still come to each request.
+    /// Number of replies that may still come to each request.
     expected: BTreeMap<(u32, u32), u32>,
     /// Nonces of the sessions.
     nonces: BTreeMap<u32, Nonce>,
     /// Sessions whose nonce is of this start of comms.
     open: BTreeSet<u32>,
-    /// Which request of each session was a subscription; the last one counts.
+    /// Number of each session's request that was a subscription; the last one counts.
     subscriptions: BTreeMap<u32, u32>,
     /// Start and ticks of the blocks that have come since, first and next: a reply may come after
     /// them, if it is the second one.
     waiting: BTreeMap<u32, Vec<(u8, u64, u64)>>,
-    /// Of each session, also of one that has unsubscribed: the count is one for
+    /// Accounting of each session, also of one that has unsubscribed: the count is one for
     /// all.
     accountings: BTreeMap<u32, SampleAccounting>,
 }
@@ -70,7 +70,7 @@ impl HostOracle {
         self.open.remove(&session.0);
     }
 
-    /// Whether comms has given this session its nonce since its restart.
+    /// Returns whether comms has given this session its nonce since its restart.
     pub(crate) fn is_open(&self, session: Session) -> bool {
         self.open.contains(&session.0)
     }
@@ -82,7 +82,7 @@ impl HostOracle {
         self.accountings.clear();
     }
 
-    /// Whether no reply and no telemetry is to come.
+    /// Returns whether no reply and no telemetry is to come.
     pub(crate) fn is_idle(&self) -> bool {
         self.accountings.is_empty() && self.expected.values().all(|count| *count == 0)
     }

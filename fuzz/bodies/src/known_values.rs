@@ -7,7 +7,7 @@ pub(crate) struct KnownValues(Vec<Known>);
 
 struct Known {
     values: Values,
-    /// Of any start of comms: 0.
+    /// Seal of the values for start 0 of comms, which stands for any start.
     seal: u32,
     is_valid: bool,
 }
@@ -41,7 +41,7 @@ impl KnownValues {
         }
     }
 
-    /// Whether these are known, and valid.
+    /// Returns whether these are known, and valid.
     pub(crate) fn has(&self, values: &Values) -> bool {
         self.valid().any(|known| known.values == *values)
     }

@@ -11,7 +11,7 @@ pub(crate) struct Events<F> {
 }
 
 impl<F: Real> Events<F> {
-    /// Of a joint that is in `phase`.
+    /// Observer of the events of a joint that is in `phase`.
     pub(crate) fn from(phase: Phase) -> Self {
         Self {
             phase,

@@ -4,11 +4,11 @@
 use crepitus_protocol::Session;
 use std::collections::BTreeMap;
 
-/// Why a session may hold the lease.
+/// Request to arm by which a session may hold the lease.
 struct Armed {
     /// The number of its request to arm.
     number: u32,
-    /// When that was executed, or the lease renewed last.
+    /// Time at which that request was executed, or the lease was renewed last.
     at: u64,
 }
 
@@ -17,12 +17,12 @@ pub(crate) struct LeaseOracle {
     length: u64,
     /// Sessions that may hold it: each has requested arming, and since then nobody has disarmed.
     armers: BTreeMap<u32, Armed>,
-    /// When a session that was one of them had armed or renewed last.
+    /// Last time at which a session that was one of `armers` had armed or renewed.
     before: Option<u64>,
 }
 
 impl LeaseOracle {
-    /// Nobody holds it. `length` is that of a lease.
+    /// Oracle of a lease that nobody holds. `length` is that of a lease.
     pub(crate) fn new(length: u64) -> Self {
         Self {
             length,
@@ -70,7 +70,7 @@ impl LeaseOracle {
         }
     }
 
-    /// Nobody holds it any more.
+    /// Records that nobody holds it any more.
     pub(crate) fn stop(&mut self) {
         self.before = self.last();
         self.armers.clear();
@@ -85,14 +85,14 @@ impl LeaseOracle {
             .max(self.before)
     }
 
-    /// Whether somebody may hold it.
+    /// Returns whether somebody may hold it.
     pub(crate) fn is_alive(&self, now: u64) -> bool {
         self.armers
             .values()
             .any(|armed| now - armed.at < self.length)
     }
 
-    /// Whether a host has requested arming, and since then nobody has disarmed.
+    /// Returns whether a host has requested arming, and since then nobody has disarmed.
     pub(crate) fn is_wanted(&self) -> bool {
         !self.armers.is_empty()
     }

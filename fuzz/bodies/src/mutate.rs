@@ -57,7 +57,7 @@ pub fn other_key(data: &[u8], seed: u32) -> Option<Vec<u8>> {
     Some((lines.join("\n") + "\n").into_bytes())
 }
 
-/// How a target of the device encodes its operations.
+/// Encoding of the operations of a target of the device.
 struct Operations {
     /// Bytes before the first operation.
     head: usize,
@@ -67,7 +67,7 @@ struct Operations {
     others: fn(&mut Rng) -> Vec<u8>,
 }
 
-/// Of `drive.rs`.
+/// Operations of `drive.rs`.
 const DRIVE: Operations = Operations {
     head: crate::drive::HEAD_BYTES,
     commit: |random| vec![3, random.u8(..)],
@@ -77,7 +77,7 @@ const DRIVE: Operations = Operations {
     },
 };
 
-/// Of `chain.rs`, where nothing was saved.
+/// Operations of `chain.rs`, where nothing was saved.
 const CHAIN: Operations = Operations {
     head: 1,
     commit: |random| vec![1, random.u8(..) % 3, 5, 0],
@@ -150,7 +150,7 @@ fn values_of_an_effect(random: &mut Rng) -> Vec<u8> {
     values
 }
 
-/// Whether the parameter switches an effect on and off.
+/// Returns whether the parameter switches an effect on and off.
 fn is_switch(parameter: &Parameter) -> bool {
     matches!(parameter.kind, Kind::Choice(choice) if choice.names == ["off", "on"])
 }

@@ -17,7 +17,7 @@ use tempfile::Builder;
 /// Checks the laws.
 ///
 /// # Panics
-/// Where one is broken.
+/// If one is broken.
 pub fn body(data: &[u8]) {
     let Some((&how, file)) = data.split_first() else {
         return;

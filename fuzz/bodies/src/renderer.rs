@@ -33,7 +33,7 @@ const LONGEST_TICK_S: f64 = 0.1;
 /// Checks the laws.
 ///
 /// # Panics
-/// Where one is broken.
+/// If one is broken.
 pub fn body(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     match bytes.byte() % 5 {
@@ -122,7 +122,7 @@ impl Guard {
         }
     }
 
-    /// Whether the torque must be zero. Starts anew with each slip and after a lost sample.
+    /// Returns whether the torque must be zero. Starts again with each slip and after a lost sample.
     fn has_turned(&mut self, turned_rad: Option<f64>, phase: Phase, slip_number: u32) -> bool {
         let before = self.slip.take();
         let (Phase::Slip(sense), Some(turned_rad)) = (phase, turned_rad) else {
@@ -138,7 +138,7 @@ impl Guard {
     }
 }
 
-/// What an object stores.
+/// Energy that an object stores, and its torque.
 #[derive(Debug)]
 struct Stored {
     energy_j: f64,

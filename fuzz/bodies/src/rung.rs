@@ -32,7 +32,7 @@ impl Rung {
         }
     }
 
-    /// Whether the method has laws with this step: explicit methods have none
+    /// Returns whether the method has laws with this step: explicit methods have none
     /// beyond their limit of stability.
     pub(crate) fn is_lawful(&self) -> bool {
         let p = &self.settings.parameters;

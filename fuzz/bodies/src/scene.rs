@@ -37,7 +37,7 @@ const RACING_RAD_S: f64 = 1e4;
 /// Checks the laws.
 ///
 /// # Panics
-/// Where one is broken.
+/// If one is broken.
 pub fn body(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else {
         return;
@@ -148,7 +148,7 @@ fn is_short(scene: &Scene) -> bool {
         && swings <= MOST_STEPS
 }
 
-/// Whether the solver is unstable with long steps.
+/// Returns whether the solver is unstable with long steps.
 fn has_limit_of_stability(scene: &Scene) -> bool {
     matches!(
         scene.solver,

@@ -5,7 +5,7 @@ use crepitus_protocol::decoder::Body;
 use crepitus_protocol::host::Request;
 use crepitus_protocol::management::ManagementRequest;
 
-/// What a host has sent in a frame.
+/// Content of a frame from a host.
 #[expect(clippy::large_enum_variant, reason = "there is one at a time")]
 pub(crate) enum Sent {
     Request(Request),

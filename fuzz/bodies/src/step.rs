@@ -26,7 +26,7 @@ const MOST_STEPS: usize = 1024;
 /// Checks the laws.
 ///
 /// # Panics
-/// Where one is broken.
+/// If one is broken.
 pub fn body(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     let rung = Rung::of(&mut bytes);
@@ -43,7 +43,7 @@ pub fn body(data: &[u8]) {
     }
 }
 
-/// What a shaft of finite speed can do.
+/// Clamps a step to what a shaft of finite speed can do.
 fn bounded(step: &ShaftStep<f64>, step_s: f64) -> ShaftStep<f64> {
     let finite = |x: f64| if x.is_finite() { x } else { 0.0 };
     let speed = |x| finite(x).clamp(-FASTEST_RAD_S, FASTEST_RAD_S);

@@ -26,7 +26,7 @@ use std::f64::consts::PI;
 
 const STEP_S: f64 = 5e-5;
 
-/// Of the device: 100 N·m/s.
+/// Slew limit of the device, N·m in a step: 100 N·m/s.
 const SLEW_NM: f64 = 100.0 * STEP_S;
 
 /// The most ticks of one input.
@@ -41,7 +41,7 @@ const SYMPTOMS: usize = crepitus_model::render::effects::SYMPTOMS.len();
 /// Checks the laws.
 ///
 /// # Panics
-/// Where one is broken.
+/// If one is broken.
 pub fn body(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     let kind = bytes.byte();
@@ -122,15 +122,15 @@ fn settings(bytes: &mut Bytes<'_>) -> EffectSettings {
     })
 }
 
-/// What one symptom may show.
+/// Bounds of what one symptom may show.
 #[derive(Clone, Copy, Debug, Default)]
 struct Bounds {
     is_on: bool,
     /// N·m, wherever the leg is.
     largest_nm: f64,
-    /// What grows with the angle, N·m/rad.
+    /// Growth of the bound with the angle, N·m/rad.
     slope: f64,
-    /// Of its play, N·m/rad.
+    /// Stiffness of its play, N·m/rad.
     stiffness: f64,
     /// Whether it has a spring besides its play, which a commit moves.
     is_elastic: bool,
@@ -170,7 +170,7 @@ impl Bounds {
     }
 }
 
-/// What is known of the leg's way in a tick.
+/// Knowledge of the leg's way in a tick.
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
     Seen,
@@ -189,10 +189,10 @@ struct Knee<F: Real> {
     is_driven: bool,
     ticks: usize,
     bounds: [Bounds; SYMPTOMS],
-    /// What each may show, and what it shows, N·m.
+    /// Torque that each may show, and torque that it shows, N·m.
     allowed_nm: [f64; SYMPTOMS],
     shown_nm: [f64; SYMPTOMS],
-    /// What each held when it was switched on, and what motion has added since, N·m.
+    /// Torque that each held when it was switched on, plus what motion has added since, N·m.
     earned_nm: [f64; SYMPTOMS],
     /// Each has had a spring besides, or has given energy, at some time.
     was_elastic: [bool; SYMPTOMS],
@@ -234,7 +234,7 @@ impl<F: Real> Knee<F> {
         }
     }
 
-    /// What a device refuses is not committed.
+    /// Commits the settings, unless a device refuses them.
     fn commit(&mut self, settings: &EffectSettings) {
         if settings.check(None).is_err() {
             return;

@@ -16,7 +16,7 @@ const MARKS: [char; 2] = ['«', '»'];
 pub struct Fault {
     /// Its name on the command line.
     pub name: String,
-    /// What is wrong, in one line.
+    /// Description of the fault, in one line.
     pub what: String,
     /// The file to plant it in, from the root of the repository.
     pub file: String,
@@ -25,15 +25,15 @@ pub struct Fault {
     pub text: String,
     /// The replacement.
     pub with: String,
-    /// Why the hard cases cannot detect it, if they cannot.
+    /// Reason why the hard cases cannot detect it, if they cannot.
     #[serde(default)]
     pub unseen_by_cases: Option<String>,
-    /// Why the model's tests cannot detect it, if they cannot.
+    /// Reason why the model's tests cannot detect it, if they cannot.
     #[serde(default)]
     pub unseen_by_tests: Option<String>,
 }
 
-/// Why a list or a fault cannot be used.
+/// Reason why a list or a fault cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum FaultError {
     /// The list is invalid.

@@ -43,9 +43,9 @@ impl Program {
 pub struct FirmwareFault {
     /// Its name on the command line.
     pub name: String,
-    /// What is wrong, in one line.
+    /// Description of the fault, in one line.
     pub what: String,
-    /// Whose image it is built into.
+    /// Program whose image the fault is built into.
     #[serde(default)]
     pub program: Program,
     /// Edits of the sources.
@@ -53,7 +53,7 @@ pub struct FirmwareFault {
     pub edit: Vec<Edit>,
     /// An edit of the built image.
     pub image: Option<ImageEdit>,
-    /// Why no test can notice it, if none can.
+    /// Reason why no test can notice it, if none can.
     pub unseen: Option<String>,
 }
 
@@ -80,7 +80,7 @@ pub struct ImageEdit {
     pub with: String,
 }
 
-/// Why a fault cannot be planted.
+/// Reason why a fault cannot be planted.
 #[derive(Debug, thiserror::Error)]
 pub enum FirmwareError {
     /// The list is invalid.

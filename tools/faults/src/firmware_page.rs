@@ -16,7 +16,7 @@ pub fn line(outcome: &FirmwareOutcome) -> String {
     format!("{}: {tests}{}", outcome.name, board.unwrap_or_default())
 }
 
-/// How many are noticed, in a line.
+/// Number of faults that are noticed, in a line.
 pub fn totals(outcomes: &[(FirmwareFault, FirmwareOutcome)]) -> String {
     let noticed = outcomes.iter().filter(|(_, outcome)| outcome.is_noticed());
     let board = outcomes

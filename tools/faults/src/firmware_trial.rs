@@ -44,7 +44,7 @@ const fn suite(
     Suite { test, only, not }
 }
 
-/// What is run on an image with a fault; a later suite only if those before notice
+/// Suites that are run on an image with a fault; a later one only if those before notice
 /// nothing.
 fn suites(program: Program) -> [Suite; 2] {
     match program {
@@ -65,7 +65,7 @@ const TESTS: Duration = Duration::from_mins(15);
 /// Timeout of a build.
 const BUILD: Duration = Duration::from_hours(1);
 
-/// What noticed a fault of the firmware.
+/// Outcome of a fault of the firmware: what noticed it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FirmwareOutcome {
     /// The fault.
@@ -74,12 +74,12 @@ pub struct FirmwareOutcome {
     pub fingerprint: u64,
     /// The tests that failed by themselves.
     pub tests: Vec<String>,
-    /// What the emulated board said, which ends every test that runs it.
+    /// Message of the emulated board, which ends every test that runs it.
     pub board: Option<String>,
 }
 
 impl FirmwareOutcome {
-    /// Whether anything has noticed the fault.
+    /// Returns whether anything has noticed the fault.
     pub fn is_noticed(&self) -> bool {
         !self.tests.is_empty() || self.board.is_some()
     }
@@ -94,7 +94,7 @@ impl FirmwareOutcome {
     /// Stores it.
     ///
     /// # Errors
-    /// What the file system says.
+    /// The file system's error.
     pub fn save(&self, folder: &Path) -> std::io::Result<()> {
         let text = serde_json::to_string_pretty(self)?;
         write_if_changed(&folder.join(format!("{}.json", self.name)), text.as_bytes())
@@ -317,7 +317,7 @@ fn failed_tests(text: &str) -> BTreeMap<String, String> {
     failed
 }
 
-/// What the board said, if that is the message of a failed test: `tick 3: PA0
+/// The board's message, if that is the message of a failed test: `tick 3: PA0
 /// is …`.
 fn mismatch(message: &str) -> Option<&str> {
     let (tick, what) = message.strip_prefix("tick ")?.split_once(": ")?;

@@ -89,7 +89,7 @@ pub(crate) fn work(arguments: &Arguments, folder: &str) -> Result<ExitCode, Box<
     Ok(ExitCode::SUCCESS)
 }
 
-/// What `cargo mutants` would do.
+/// Mutants that `cargo mutants` would try.
 fn listed(root: &Path, folder: &str) -> Result<Vec<Mutant>, Box<dyn Error>> {
     let output = Command::new("cargo-mutants")
         .args(["mutants", "--list", "--json", "-d", folder])

@@ -28,7 +28,7 @@ pub struct Outcome {
 pub struct CaseOutcome {
     /// Its number.
     pub id: String,
-    /// What it found; `None` if it holds.
+    /// Its finding; `None` if it holds.
     pub found: Option<String>,
 }
 
@@ -48,7 +48,7 @@ impl Outcome {
     /// Stores it.
     ///
     /// # Errors
-    /// What the file system says.
+    /// The file system's error.
     pub fn save(&self, folder: &Path) -> io::Result<()> {
         let text = serde_json::to_string_pretty(self)?;
         write_if_changed(&folder.join(format!("{}.json", self.name)), text.as_bytes())

@@ -21,7 +21,7 @@ pub fn line(outcome: &Outcome) -> String {
     format!("{}: {cases}; {test}", outcome.name)
 }
 
-/// How many are noticed, in a line.
+/// Number of faults that are noticed, in a line.
 pub fn totals(outcomes: &[(Fault, Outcome)]) -> String {
     let by_cases = outcomes.iter().filter(|(_, o)| o.noticed_by().count() > 0);
     let tested = outcomes.iter().filter(|(_, o)| o.tested).count();

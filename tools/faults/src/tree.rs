@@ -29,7 +29,7 @@ const FIRMWARE_DECIDES: [&str; 8] = [
 /// A file that is already the same is not written, so that it is not rebuilt.
 ///
 /// # Errors
-/// What the file system says.
+/// The file system's error.
 pub fn copy(from: &Path, to: &Path, others: &BTreeMap<PathBuf, String>) -> io::Result<()> {
     fs::create_dir_all(to)?;
     for file in files(from)? {
@@ -51,7 +51,7 @@ pub fn copy(from: &Path, to: &Path, others: &BTreeMap<PathBuf, String>) -> io::R
 /// Writes a file unless it holds these bytes already.
 ///
 /// # Errors
-/// What the file system says.
+/// The file system's error.
 pub fn write_if_changed(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if fs::read(path).is_ok_and(|old| old == bytes) {
         return Ok(());
@@ -65,7 +65,7 @@ pub fn write_if_changed(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// A number that changes with the sources that outcomes depend on.
 ///
 /// # Errors
-/// What the file system says.
+/// The file system's error.
 pub fn fingerprint(root: &Path) -> io::Result<u64> {
     fingerprint_of(root, &DECIDES)
 }
@@ -73,7 +73,7 @@ pub fn fingerprint(root: &Path) -> io::Result<u64> {
 /// The same for faults of the firmware.
 ///
 /// # Errors
-/// What the file system says.
+/// The file system's error.
 pub fn firmware_fingerprint(root: &Path) -> io::Result<u64> {
     fingerprint_of(root, &FIRMWARE_DECIDES)
 }

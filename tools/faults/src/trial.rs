@@ -44,7 +44,7 @@ pub mod planted {
 }
 ";
 
-/// Why a fault could not be tried.
+/// Reason why a fault could not be tried.
 #[derive(Debug, thiserror::Error)]
 pub enum TrialError {
     /// It does not apply.

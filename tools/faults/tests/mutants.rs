@@ -36,7 +36,7 @@ mod tests {
 }
 ";
 
-/// As `cargo mutants` lists it: the mutant at this text.
+/// Returns the mutant at this text as `cargo mutants` lists it.
 fn listed(genre: &str, at: &str, replacement: &str) -> String {
     let before = &SOURCE[..SOURCE.find(at).expect("the text")];
     let line = before.matches('\n').count() + 1;

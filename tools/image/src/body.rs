@@ -4,16 +4,16 @@ use crate::decode::{Flow, Instruction, PC};
 use crate::elf::Image;
 use std::ops::Range;
 
-/// Where a call or a jump out of a function goes.
+/// Target of a call, or of a jump out of a function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
-    /// To this address.
+    /// This address.
     Known(u32),
     /// Unknown from the code.
     Unknown,
 }
 
-/// How an instruction leaves its function.
+/// Way in which an instruction leaves its function.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Leave {
     /// Back to the caller.
@@ -33,7 +33,7 @@ pub struct Step {
     pub next: Vec<usize>,
     /// The function that it calls.
     pub call: Option<Target>,
-    /// How it leaves the function, if it does.
+    /// Way in which it leaves the function, if it does.
     pub leave: Option<Leave>,
 }
 
@@ -55,7 +55,7 @@ impl Body {
         Self { steps }
     }
 
-    /// Which steps the entry reaches.
+    /// Returns for each step whether the entry reaches it.
     pub fn reached(&self) -> Vec<bool> {
         let mut reached = vec![false; self.steps.len()];
         let mut open = vec![0];

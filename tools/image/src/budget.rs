@@ -71,7 +71,7 @@ use toml::Spanned;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Budget {
-    /// How much a recorded size may grow, in percent.
+    /// Allowed growth of a recorded size, in percent.
     #[serde(default = "two")]
     pub tolerance_percent: f64,
     /// Loops that end, and why, for all images.
@@ -121,7 +121,7 @@ pub struct ImageBudget {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Recorded {
-    /// What is programmed.
+    /// Bytes that are programmed.
     pub flash: Spanned<u32>,
     /// Sections in RAM.
     pub ram: Spanned<u32>,
@@ -162,7 +162,7 @@ pub struct Interrupt {
 pub struct End {
     /// The function; that it never returns is checked.
     pub function: String,
-    /// What happens instead.
+    /// Description of what happens instead.
     pub reason: String,
 }
 
@@ -179,7 +179,7 @@ pub struct BoundedLoops {
     /// Instead: the most iterations of any of its loops. Only for a library,
     /// whose lines are not in this repository.
     pub at_most: Option<u64>,
-    /// Why they hold.
+    /// Reason why the bounds hold.
     pub reason: String,
 }
 
@@ -192,7 +192,7 @@ pub struct LibraryPanics {
     pub library: String,
     /// The most instructions that call a panic.
     pub at_most: usize,
-    /// Why control gets to none of them, or what happens if it does.
+    /// Reason why control gets to none of them, or what happens if it does.
     pub reason: String,
 }
 
@@ -207,7 +207,7 @@ pub struct IndirectCalls {
     pub calls: usize,
     /// Every function that they can reach.
     pub targets: Vec<String>,
-    /// Why these.
+    /// Reason for these targets.
     pub reason: String,
 }
 
@@ -219,7 +219,7 @@ pub struct DynamicStack {
     pub function: String,
     /// The most that it takes on top of its frame.
     pub bytes: u32,
-    /// Why that is enough.
+    /// Reason why that is enough.
     pub reason: String,
 }
 
@@ -272,7 +272,7 @@ impl Budget {
 }
 
 impl BoundedLoops {
-    /// Whether it is for this function of the source.
+    /// Returns whether it is for this function of the source.
     pub fn is_for(&self, function: &str) -> bool {
         match self.function.strip_suffix('*') {
             Some(begin) if self.at_most.is_some() => function.starts_with(begin),

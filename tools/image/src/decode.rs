@@ -28,7 +28,7 @@ pub const LR: Register = 14;
 /// The program counter.
 pub const PC: Register = 15;
 
-/// Where control goes after an instruction.
+/// Flow of control after an instruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flow {
     /// To the next instruction.
@@ -62,10 +62,10 @@ pub enum Flow {
     Breakpoint,
 }
 
-/// What happens to the stack pointer.
+/// Effect on the stack pointer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stack {
-    /// Nothing.
+    /// No effect.
     Same,
     /// It goes down: this many more bytes are in use.
     Down(u32),
@@ -75,7 +75,7 @@ pub enum Stack {
     Dynamic,
 }
 
-/// How an instruction puts a constant into a register.
+/// Way in which an instruction puts a constant into a register.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Constant {
     /// It does not.
@@ -102,9 +102,9 @@ pub struct Instruction {
     pub address: u32,
     /// Its length, 2 or 4 bytes.
     pub length: u32,
-    /// Where control goes.
+    /// Flow of control after it.
     pub flow: Flow,
-    /// What it does to `sp`.
+    /// Its effect on `sp`.
     pub stack: Stack,
     /// The constant that it makes.
     pub constant: Constant,
@@ -137,7 +137,7 @@ impl Instruction {
     }
 }
 
-/// Whether a first halfword begins an instruction of 32 bits.
+/// Returns whether a first halfword begins an instruction of 32 bits.
 pub fn is_wide(first: u16) -> bool {
     first >= 0xE800
 }
@@ -155,7 +155,7 @@ pub fn decode(address: u32, first: u16, second: Option<u16>) -> Instruction {
     }
 }
 
-/// How many instructions an `it` makes conditional; none if it is not one.
+/// Number of instructions that an `it` makes conditional; 0 if it is not one.
 pub fn it_block(first: u16) -> u32 {
     let mask = first & 0xF;
     if first & 0xFF00 != 0xBF00 || mask == 0 {

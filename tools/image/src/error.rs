@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// Why an image or its budget cannot be read. Not a finding about the image.
+/// Reason why an image or its budget cannot be read. Not a finding about the image.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
@@ -20,7 +20,7 @@ pub enum ImageError {
     /// The file is an ELF file, but for another machine.
     #[error("not a 32-bit little-endian ARM executable")]
     Machine,
-    /// Without mapping symbols code and data cannot be distinguished.
+    /// There are no mapping symbols, without which code and data cannot be distinguished.
     #[error(
         "no mapping symbols ($t, $d): code and data cannot be told apart; do not strip the image"
     )]
@@ -33,7 +33,7 @@ pub enum ImageError {
     Memory {
         /// Line, from 1.
         line: usize,
-        /// What was found or is missing.
+        /// Description of what was found or is missing.
         what: String,
     },
     /// The budget file is invalid.

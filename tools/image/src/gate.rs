@@ -38,7 +38,7 @@ pub struct Gate<'a> {
     vouched: Vouched<'a>,
 }
 
-/// What is examined.
+/// Input of [`examine`].
 #[derive(Clone, Copy)]
 pub struct Subject<'a> {
     /// The image.

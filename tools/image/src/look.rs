@@ -1,4 +1,4 @@
-//! What a function can reach, without a budget: for finding one's way in an
+//! Survey of what a function can reach, without a budget: for finding one's way in an
 //! image, and for the first budget file.
 
 use crate::elf::Image;
@@ -36,11 +36,11 @@ pub struct Row {
     pub address: u32,
     /// Instructions that its entry reaches.
     pub instructions: usize,
-    /// What it uses of the stack by itself.
+    /// Its own use of the stack, in bytes.
     pub frame: u32,
-    /// How many loops it has.
+    /// Number of its loops.
     pub loops: usize,
-    /// How many of its calls go where the code does not tell.
+    /// Number of its calls whose target is unknown from the code.
     pub unknown_calls: usize,
 }
 
@@ -121,7 +121,7 @@ fn near(program: &Program, name: &str) -> Option<String> {
         .cloned()
 }
 
-/// For people.
+/// Returns the looks as text for people.
 pub fn render(looks: &[Look]) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.

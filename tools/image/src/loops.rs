@@ -56,7 +56,7 @@ pub fn loops(body: &Body) -> Vec<Loop> {
     found
 }
 
-/// Where a loop is entered: from outside it, or at the function's beginning.
+/// Step at which a loop is entered: from outside it, or at the function's beginning.
 fn header(body: &Body, group: &[usize], inside: &[bool], alive: &[bool]) -> usize {
     let mut entered = vec![false; inside.len()];
     entered[0] = true;
@@ -75,7 +75,7 @@ fn header(body: &Body, group: &[usize], inside: &[bool], alive: &[bool]) -> usiz
         .unwrap_or(first)
 }
 
-/// Whether a step is of the loop's own making: a conditional return, and the
+/// Returns whether a step is of the loop's own making: a conditional return, and the
 /// `it` before it, stand in a loop but belong to the function around it.
 fn stays(body: &Body, n: usize) -> bool {
     let conditional = |n: usize| body.steps.get(n).is_some_and(|s| s.it.conditional);
@@ -83,7 +83,7 @@ fn stays(body: &Body, n: usize) -> bool {
     !is_it && !leaves(&body.steps[n])
 }
 
-/// Whether a step can leave the function.
+/// Returns whether a step can leave the function.
 fn leaves(step: &Step) -> bool {
     matches!(
         step.leave,
@@ -91,7 +91,7 @@ fn leaves(step: &Step) -> bool {
     )
 }
 
-/// From which steps there is a way to leave, or into some loop: everything but
+/// Returns for each step whether there is a way from it to leave, or into some loop: everything but
 /// a dead end.
 fn ends(body: &Body, next: &[Vec<usize>], reached: &[bool]) -> Vec<bool> {
     let mut ends: Vec<bool> = body.steps.iter().map(leaves).collect();

@@ -19,14 +19,14 @@ pub struct Region {
 }
 
 impl Region {
-    /// Whether `size` bytes at an address lie inside.
+    /// Returns whether `size` bytes at an address lie inside.
     pub fn holds(&self, address: u32, size: u32) -> bool {
         address >= self.origin
             && u64::from(address) + u64::from(size)
                 <= u64::from(self.origin) + u64::from(self.length)
     }
 
-    /// Whether two regions share a byte.
+    /// Returns whether two regions share a byte.
     pub fn overlaps(&self, other: &Self) -> bool {
         let end = |r: &Self| u64::from(r.origin) + u64::from(r.length);
         u64::from(self.origin) < end(other) && u64::from(other.origin) < end(self)

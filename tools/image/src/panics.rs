@@ -1,6 +1,6 @@
 //! Functions that mean a panic, by their names.
 
-/// Whether control that gets here has panicked, or is in a fault handler,
+/// Returns whether control that gets here has panicked, or is in a fault handler,
 /// which to an interrupt is the same.
 ///
 /// Names are demangled and without hash. The path decides where a name alone

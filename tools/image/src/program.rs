@@ -31,7 +31,7 @@ impl Function {
             .map_or("(no name)", String::as_str)
     }
 
-    /// Whether one of its names is this one.
+    /// Returns whether one of its names is this one.
     pub fn is(&self, name: &str) -> bool {
         self.names.iter().any(|n| n == name)
     }
@@ -40,7 +40,7 @@ impl Function {
 /// All functions of an image.
 #[derive(Debug, Clone)]
 pub struct Program {
-    /// By address.
+    /// Functions, by address.
     pub functions: BTreeMap<u32, Function>,
     /// Their frames, by address.
     pub frames: BTreeMap<u32, Frame>,

@@ -30,11 +30,11 @@ impl Reach {
                 continue;
             }
             let calls = program.calls(function).into_iter();
-            let told = calls.filter_map(|(site, callee)| Some((site, callee?)));
+            let known = calls.filter_map(|(site, callee)| Some((site, callee?)));
             let more = vouched(function)
                 .into_iter()
                 .map(|callee| (address, callee));
-            for (site, callee) in told.chain(more) {
+            for (site, callee) in known.chain(more) {
                 from.entry(callee).or_insert_with(|| {
                     open.push_back(callee);
                     Some((address, site))
@@ -82,12 +82,12 @@ impl Reach {
             let Some(function) = program.functions.get(address) else {
                 return Vec::new();
             };
-            let told = program
+            let known = program
                 .calls(function)
                 .into_iter()
                 .filter_map(|(_, callee)| callee);
             let callees: BTreeSet<usize> =
-                told.chain(vouched(function)).filter_map(index).collect();
+                known.chain(vouched(function)).filter_map(index).collect();
             callees.into_iter().collect()
         };
         let next: Vec<Vec<usize>> = all.iter().map(callees).collect();

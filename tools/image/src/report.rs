@@ -30,7 +30,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Whether there are no failures.
+    /// Returns whether there are no failures.
     pub fn passes(&self) -> bool {
         self.failures.is_empty()
     }
@@ -134,10 +134,10 @@ pub struct PanicRow {
 pub struct Finding {
     /// The check that found it.
     pub check: &'static str,
-    /// What it found.
+    /// Description of the finding.
     pub what: String,
-    /// Where: one line a place, or the steps of a path.
+    /// Its places, one a line, or the steps of a path.
     pub at: Vec<String>,
-    /// What to do about it.
+    /// Its remedy.
     pub todo: String,
 }

@@ -17,7 +17,7 @@ use object::{LittleEndian, Object, ObjectSymbol};
 
 type File<'data> = ElfFile<'data, FileHeader32<LittleEndian>>;
 
-/// Where flash begins.
+/// Address at which flash begins.
 const FLASH: u32 = 0x0800_0000;
 
 /// Bytes from there that hold the vector table.

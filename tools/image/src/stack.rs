@@ -1,4 +1,4 @@
-//! How deep the stack gets: inside a function, and along its calls.
+//! Depth of the stack: inside a function, and along its calls.
 //!
 //! Inside a function every `push`, `vpush`, `sub sp` and write-back to `sp` is
 //! followed along the control flow; a call is charged with the stack in use at
@@ -18,7 +18,7 @@ pub struct Frame {
     pub deepest: u32,
     /// Stack in use at each call, and the callee; tail calls are calls, too.
     pub calls: Vec<(u32, u32)>,
-    /// Where `sp` is set to something unknown, or grows in a loop.
+    /// Addresses at which `sp` is set to something unknown, or grows in a loop.
     pub dynamic: Vec<u32>,
     /// It has calls or jumps with unknown target.
     pub unknown_calls: bool,

@@ -127,7 +127,7 @@ fn failures(report: &Report) -> Vec<&str> {
     report.failures.iter().map(|f| f.what.as_str()).collect()
 }
 
-/// Without those of sizes.
+/// Hints about panics, without those of sizes.
 fn hints(report: &Report) -> Vec<&str> {
     let hints = report.hints.iter().filter(|hint| hint.check == "panic");
     hints.map(|hint| hint.what.as_str()).collect()

@@ -67,7 +67,7 @@ struct Phase<'p, 'a, E, S, R> {
     phases: &'p Phases,
     /// State that the method needs at the start of a phase.
     restarted: R,
-    /// How much a step may grow.
+    /// Largest factor by which a step may grow.
     growth: f64,
     y: NalgebraVec<f64>,
     equations: PhantomData<&'a E>,

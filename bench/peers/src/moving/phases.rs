@@ -9,7 +9,7 @@
 //! ```
 //!
 //! T = kr·θ, under `physical` with J·Ω̇. A frozen slip has a known duration and is not integrated.
-//! Who knows the system need not integrate a stick: θ = θ₀ + φ(t) − φ₀ ([`StickBy::Position`]); all
+//! A peer that knows the system need not integrate a stick: θ = θ₀ + φ(t) − φ₀ ([`StickBy::Position`]); all
 //! that is left then is the library's search for the event.
 
 use crate::motion::{Cursor, Hand};
@@ -18,12 +18,12 @@ use crepitus_model::Convention;
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-/// How far beyond Ts counts as at it, relative.
+/// Largest excess over Ts that still counts as Ts, relative.
 const SLACK: f64 = 1e-12;
 /// More events than any of the motions has.
 const MOST_EVENTS: usize = 4000;
 
-/// Where a peer has the angle of a stick from.
+/// Source of a peer's angle in a stick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StickBy {
@@ -33,7 +33,7 @@ pub enum StickBy {
     Position,
 }
 
-/// What the object does.
+/// Phase of the object.
 #[derive(Clone, Copy, Debug)]
 enum Phase {
     /// θ = θ₀ + φ − φ₀.
@@ -68,7 +68,7 @@ pub struct Step {
     pub longest_s: f64,
 }
 
-/// Where a solver found the end of a phase.
+/// End of a phase as a solver found it.
 #[derive(Clone, Copy, Debug)]
 pub struct PhaseEnd {
     /// When, s.
@@ -84,12 +84,12 @@ pub trait Integrator {
     /// Integrates from `from_s` and `y` to the end of the phase; none if the run ends first.
     ///
     /// # Errors
-    /// What the library says when it gives up.
+    /// The library's message if it gives up.
     fn phase(&mut self, from_s: f64, y: [f64; 2], step: Step) -> Result<Option<PhaseEnd>, String>;
 }
 
 impl Phases {
-    /// In stick at θ = 0 at the start.
+    /// Creates the problem, in stick at θ = 0 at the start.
     ///
     /// # Errors
     /// A motion that peers cannot be given.
@@ -152,7 +152,7 @@ impl Phases {
     /// Does the whole run with a library and notes its events.
     ///
     /// # Errors
-    /// What the library says when it gives up, or more events than there can be.
+    /// The library's message if it gives up, or more events than there can be.
     pub fn run(
         &self,
         integrator: &mut impl Integrator,
@@ -235,7 +235,7 @@ impl Phases {
         [u, self.omega(time_s)]
     }
 
-    /// When a frozen slip that begins now ends, and θ there.
+    /// Time at which a frozen slip that begins now ends, and θ there.
     fn frozen_end(&self, time_s: f64) -> Option<(f64, f64)> {
         let Phase::Slip { sense } = self.phase.get() else {
             return None;

@@ -82,7 +82,7 @@ struct Watch<'a> {
 }
 
 impl Watch<'_> {
-    /// Where the event function falls through zero.
+    /// Time and state at which the event function falls through zero.
     fn locate(
         &self,
         span_s: (f64, f64),

@@ -32,7 +32,7 @@ pub(super) struct Readings {
 }
 
 impl Readings {
-    /// Of a device that is in order.
+    /// Readings of a device that is in order.
     pub(super) const GOOD: Self = Self {
         turn: 0,
         has_current: true,
@@ -46,7 +46,7 @@ impl Readings {
 #[derive(Clone, Copy)]
 struct LinkLoss {
     blocks: u32,
-    /// As counted by comms, with the restarts of the drive that it has seen.
+    /// Number of lost samples as counted by comms, with the restarts of the drive that it has seen.
     samples: u32,
     restarts: u32,
 }
@@ -71,7 +71,7 @@ pub(super) struct Device {
     counter: u32,
     saved: Option<(Revision, Values)>,
     pub(super) samples: Samples,
-    /// As of the last block that has arrived; none since a restart of comms.
+    /// Losses as of the last block that has arrived; none since a restart of comms.
     loss: Option<LinkLoss>,
     pub(super) save_works: bool,
 }
@@ -86,7 +86,7 @@ fn identity(role: Role, reset: ResetCause) -> Identity {
 }
 
 impl Device {
-    /// Just switched on.
+    /// Returns a device that was just switched on.
     pub(super) fn new(saved: Option<(Revision, Values)>) -> Self {
         Self {
             tick: 0,

@@ -94,7 +94,7 @@ impl Chain {
         }
     }
 
-    /// A frame of before again: nothing of it is obeyed, but for a session that is
+    /// A frame of before again: nothing of it is executed, but for a session that is
     /// opened again, by a frame of before a restart.
     pub(super) fn replay(&mut self, which: u8) {
         if self.sent.is_empty() || !self.device.comms_runs() {

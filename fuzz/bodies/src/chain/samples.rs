@@ -65,7 +65,7 @@ struct Subscription {
 /// All ticks of all starts of the drive, and the subscriptions.
 #[derive(Default)]
 pub(super) struct Samples {
-    /// By start of the drive, and tick since.
+    /// Ticks of the drive, by its start and the tick since.
     produced: BTreeMap<u8, Vec<Produced>>,
     subscriptions: BTreeMap<u32, Subscription>,
 }

@@ -1,4 +1,4 @@
-//! What sensors and lines of the drive deliver in some ticks.
+//! Readings of the drive's sensors and lines in some ticks.
 
 use crate::bytes::Bytes;
 use crepitus_device::drive::slow_checks::SlowInput;
@@ -30,7 +30,7 @@ pub(super) enum SensorFault {
     MotorC(f32),
     JointTurns(f32),
     NoSlowReading,
-    /// Of the second sensor of the current.
+    /// Offset of the second sensor of the current, A.
     MonitorOffsetA(f32),
     IntervalUs(u32),
     CommsLineIsOn,
@@ -59,7 +59,7 @@ const SENSOR_FAULTS: [SensorFault; 16] = [
 ];
 
 impl Readings {
-    /// Of a device that is in order.
+    /// Returns the readings of a device that is in order.
     pub(super) fn good() -> Self {
         Self {
             turn: 0,

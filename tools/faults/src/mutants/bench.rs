@@ -40,7 +40,7 @@ pub struct Program {
     reaches: HashSet<u32>,
 }
 
-/// What became of a mutant.
+/// Outcome of a mutant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fate {
     /// This program failed, or hung.
@@ -321,7 +321,7 @@ fn numbers(text: &str) -> impl Iterator<Item = u32> {
         .filter_map(|rest| rest.split(')').next()?.parse().ok())
 }
 
-/// What earlier runs have noticed, by the mutant's name; the rest is tried again, as there
+/// Mutants that earlier runs have noticed, by their name; the rest is tried again, as there
 /// may be other tests now.
 pub fn known(text: &str) -> HashMap<&str, Fate> {
     text.lines()

@@ -59,7 +59,7 @@ struct Switched {
     replacement: String,
 }
 
-/// What is written instead of a range of the text.
+/// Replacement of a range of the text.
 struct Edit {
     range: Range<usize>,
     kind: Kind,
@@ -67,7 +67,7 @@ struct Edit {
 }
 
 enum Kind {
-    /// Before the first statement of a function.
+    /// Insertion before the first statement of a function.
     Body,
     Binary {
         left: Range<usize>,
@@ -78,14 +78,14 @@ enum Kind {
         operator: String,
         operand: Range<usize>,
     },
-    /// Behind the pattern of an arm, with its guard if it has one.
+    /// Edit behind the pattern of an arm, with its guard if it has one.
     Arm {
         guard: Option<Range<usize>>,
     },
     Guard,
 }
 
-/// Where each line begins.
+/// A source and the beginning of each of its lines.
 struct Lines<'a> {
     source: &'a str,
     begins: Vec<usize>,
@@ -243,7 +243,7 @@ impl<'ast> Visit<'ast> for Found<'_> {
     }
 }
 
-/// Whether a chain of conditions binds with `let`.
+/// Returns whether a chain of conditions binds with `let`.
 fn binds(expr: &syn::Expr) -> bool {
     match expr {
         syn::Expr::Let(_) => true,
@@ -329,7 +329,7 @@ impl Edit {
         }
     }
 
-    /// What a mutant makes of its replacement, or else what is there.
+    /// Code that chooses what a mutant makes of its replacement, or else what is there.
     fn chosen(&self, otherwise: &str, with: impl Fn(&str) -> String) -> String {
         let mut text = String::new();
         for Switched {

@@ -22,7 +22,7 @@ pub(super) enum Spot {
     /// Line, the place in a library, and how many loops of the same spot it
     /// is nested in.
     Line(u32, String, usize),
-    /// Without debug information.
+    /// Address of the loop, if there is no debug information.
     Address(u32),
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Copies {
     pub(super) count: usize,
 }
 
-/// Where a loop comes from.
+/// Origin of a loop in the source.
 struct Origin {
     /// The function of the source that holds it.
     owner: String,

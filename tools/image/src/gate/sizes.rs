@@ -5,7 +5,7 @@ use crate::elf::Section;
 use crate::report::{RECORD, Report, Size};
 use crate::text::grouped;
 
-/// Below this change, in percent, the record should follow.
+/// Change, in percent, below which the record should follow.
 const SHRUNK_PERCENT: f64 = -5.0;
 
 impl Gate<'_> {
@@ -98,7 +98,7 @@ impl Gate<'_> {
         }
     }
 
-    /// From the stack's beginning down to the section below it.
+    /// Returns the room from the stack's beginning down to the section below it, in bytes.
     fn stack_room(&self) -> u32 {
         let top = self.vectors.stack;
         let below = top.saturating_sub(1);
@@ -112,7 +112,7 @@ impl Gate<'_> {
     }
 }
 
-/// By how much a size differs from the record.
+/// Difference of a size from the record, %.
 pub(crate) fn change_percent(size: &Size) -> f64 {
     match (size.used, size.recorded) {
         (0, 0) => 0.0,

@@ -6,7 +6,7 @@ use crate::report::{InterruptRow, Level, Report};
 use crate::stack::{Depths, Extra, Worst};
 use std::collections::BTreeMap;
 
-/// What the processor pushes: 8 words, 18 more where the FPU is in use, and
+/// Bytes that the processor pushes: 8 words, 18 more where the FPU is in use, and
 /// one to align (ARM DDI 0403E, B1.5.6 and B1.5.7).
 fn exception_frame(fpu: bool) -> u32 {
     let words = if fpu { 8 + 18 } else { 8 };

@@ -53,7 +53,7 @@ impl<'a> Vouched<'a> {
         }
     }
 
-    /// Where the unknown calls of a function go.
+    /// Addresses to which the unknown calls of a function go.
     pub(super) fn targets(&self, function: &Function) -> Vec<u32> {
         let names = function.names.iter();
         let known = names.filter_map(|name| self.targets.get(name.as_str()));
@@ -81,7 +81,7 @@ impl<'a> Vouched<'a> {
         self.budget.loops.iter().chain(self.shared)
     }
 
-    /// Whether there is an entry for the panics of a library.
+    /// Returns whether there is an entry for the panics of a library.
     pub(super) fn panics(&self, library: &str) -> bool {
         let mut entries = self.budget.panics.iter();
         let entry = entries.find(|e| e.library == library);

@@ -175,7 +175,7 @@ pub(crate) fn examined(image: &Image, budget: &str) -> Report {
     examine("it", subject).unwrap()
 }
 
-/// What failed: check and finding, a line each.
+/// Failures of a report: check and finding, a line each.
 pub(crate) fn failures(report: &Report) -> Vec<String> {
     let failures = report.failures.iter();
     failures
