@@ -13,7 +13,7 @@ use support::{crepitus, recording, rows, run, stderr, stdout};
 /// An examination, and how long it has something new, s.
 type Examination = (&'static str, f64);
 
-/// Those of the range, of rigidity and of roughness.
+/// Examinations of the range, of rigidity and of roughness.
 const OF_THE_JOINT: [Examination; 7] = [
     ("end-feel-capsular", 4.4),
     ("end-feel-hard", 1.6),
@@ -24,7 +24,7 @@ const OF_THE_JOINT: [Examination; 7] = [
     ("crepitus-into-a-wall", 2.0),
 ];
 
-/// Those of muscles.
+/// Examinations of muscles.
 const OF_MUSCLES: [Examination; 6] = [
     ("spasticity-tardieu", 5.4),
     ("spasticity-catch-angles", 1.7),

@@ -129,7 +129,7 @@ impl Shared for Parts<'_> {
     }
 }
 
-/// Those of `idle`.
+/// Parts that `idle` uses.
 struct IdleParts<'a> {
     parts: Parts<'a>,
     prepared: &'a mut Option<Prepared>,

@@ -34,7 +34,7 @@ const MOTIONS: [(&str, Velocity); 3] = [
 
 #[derive(Debug, Default)]
 struct Seen {
-    /// When, and between which phases.
+    /// Times of events, and the phases before and after.
     events: Vec<(f64, i8, i8)>,
     /// ∫T dt, N·m·s, and ∫θ̇ dt of the object, rad.
     impulse: f64,

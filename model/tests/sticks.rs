@@ -238,7 +238,7 @@ struct Definition {
 /// A motion that only just breaks a stick, or only just does not.
 struct Unclear;
 
-/// When, and in which sense.
+/// Time and sense of a break.
 struct Found {
     time_s: f64,
     sign: f64,

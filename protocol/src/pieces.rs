@@ -89,7 +89,7 @@ pub struct Reassembly {
     seal: u32,
     /// The start of comms that the seal has to be of.
     comms_start: u16,
-    /// Those of the pieces that have arrived; the others are at their defaults.
+    /// Values of the pieces that have arrived; the others are at their defaults.
     values: [f64; PARAMETER_COUNT],
     /// Number of pieces.
     count: u8,

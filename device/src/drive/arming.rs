@@ -89,7 +89,7 @@ pub struct Seen {
     pub raw_a: Option<(f32, f32)>,
     /// The drive's enable line, as read back.
     pub line_is_on: bool,
-    /// That of comms, at its gate.
+    /// Whether the enable line of comms is on, at its gate.
     pub comms_line_is_on: bool,
     /// The encoder's count.
     pub count: i32,

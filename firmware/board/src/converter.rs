@@ -71,7 +71,7 @@ const REFERENCE_V: f32 = 3.3;
 /// Gain of shunt and amplifier, V/A.
 const VOLTS_PER_AMPERE: f32 = 20.0 * 0.033;
 
-/// That of the coil.
+/// Gain of the coil's shunt and amplifier, V/A.
 const COIL_VOLTS_PER_AMPERE: f32 = 20.0 * 0.025;
 
 /// Counts of the whole range.

@@ -34,7 +34,7 @@ where
     }
 }
 
-/// Those of `idle`.
+/// Parts that `idle` uses.
 pub(crate) struct IdleParts<C, K, R> {
     pub(crate) parts: Parts<C, K>,
     pub(crate) rendering_plan: R,

@@ -10,7 +10,7 @@
 pub struct Point {
     /// Coordinate to the right.
     pub x: f64,
-    /// Upwards.
+    /// Position, upwards.
     pub y: f64,
 }
 

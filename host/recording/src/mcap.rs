@@ -165,7 +165,7 @@ fn parameters_schema() -> Value {
     } })
 }
 
-/// That of Foxglove.
+/// Foxglove's schema of a log message.
 fn log_schema() -> Value {
     json!({ "title": "foxglove.Log", "type": "object", "properties": {
         "timestamp": { "type": "object", "title": "time", "properties": {

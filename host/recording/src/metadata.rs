@@ -82,7 +82,7 @@ impl Metadata {
         }
     }
 
-    /// That of a recording whose header is damaged. What every recording of this format has is
+    /// Metadata of a recording whose header is damaged. What every recording of this format has is
     /// known all the same.
     pub(crate) fn unknown() -> Self {
         Self {

@@ -75,7 +75,7 @@ pub enum Damage {
 /// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// That of a recording in progress.
+    /// Format of a recording in progress.
     Log,
     /// Parquet.
     Parquet,
@@ -232,7 +232,7 @@ impl Recording {
         )
     }
 
-    /// That of the file it was made of, and its own behind a heading.
+    /// Damage of the file it was made of, and its own behind a heading.
     fn damage(&self, heading: &str) -> Vec<String> {
         let mut damage = self.earlier_damage.clone();
         if !self.findings.is_empty() {

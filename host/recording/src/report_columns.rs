@@ -97,7 +97,7 @@ impl ReportColumns {
         self.settings
     }
 
-    /// Those of every recording, those of crepitus, the phase of each symptom, and the current of
+    /// Columns of every recording, those of crepitus, the phase of each symptom, and the current of
     /// the vibration actuator's coil.
     pub fn columns(&self) -> Vec<Column> {
         let phases = self.symptoms.iter().filter_map(|(spec, _)| spec.phases);

@@ -267,7 +267,7 @@ impl PlantCollector {
     }
 }
 
-/// Those of the columns that get a chart, and where they stand in a row.
+/// Columns that get a chart, and their places in a row.
 fn columns(columns: &[Column]) -> Vec<(usize, Shown)> {
     columns
         .iter()

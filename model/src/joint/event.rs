@@ -8,7 +8,7 @@ use crate::real::Real;
 pub struct Event<F> {
     /// Kind of the event.
     pub kind: EventKind,
-    /// When: the fraction of the step that had passed, in [0, 1].
+    /// Fraction of the step that had passed at the event, in [0, 1].
     pub fraction: F,
     /// Phase before.
     pub from: Phase,

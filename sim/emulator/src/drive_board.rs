@@ -74,7 +74,7 @@ pub struct Faults {
     pub line_is_stuck: Option<bool>,
     /// The drive's gate lets all pass, whatever its line.
     pub drive_gate_is_stuck: bool,
-    /// That of comms does.
+    /// The gate of comms lets all pass, whatever its line.
     pub comms_gate_is_stuck: bool,
 }
 

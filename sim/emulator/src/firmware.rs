@@ -19,7 +19,7 @@ const TARGET: &str = "thumbv7em-none-eabihf";
 pub enum Program {
     /// The drive's.
     Drive,
-    /// That of comms.
+    /// Program of comms.
     Comms,
     /// The solver ladder, see [`crate::ladder`].
     Ladder,

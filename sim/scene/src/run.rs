@@ -92,7 +92,7 @@ pub enum RunError<E> {
 /// A state is NaN, infinite, or soon will be: what computes it is unstable with this step.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Diverged {
-    /// That of the object.
+    /// Divergence of the object.
     #[error(
         "solver \"{solver}\" diverged: by t = {by_s} s the object's state is no number. ωn·h = {radians_per_step:.3} \
          with this step; choose a shorter one, or a solver that propagates exactly"
@@ -105,7 +105,7 @@ pub enum Diverged {
         /// ωn·h, what decides on its stability.
         radians_per_step: f64,
     },
-    /// That of the shaft, which a plant moves and the device's torque of the step before.
+    /// Divergence of the shaft, which a plant moves and the device's torque of the step before.
     #[error(
         "the plant and the device diverged: by t = {by_s} s the shaft's angle or speed is no number, or above 1e15, with steps \
          of {step_s} s; choose shorter ones, and a solver that propagates exactly"

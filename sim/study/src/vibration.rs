@@ -70,7 +70,7 @@ pub struct AtSpeed {
 /// One step of the chain.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// Which.
+    /// Step of the chain.
     pub step: Step,
     /// Measures, unless the run failed.
     #[serde(flatten)]

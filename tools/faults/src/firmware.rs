@@ -17,10 +17,10 @@ const MARKS: [char; 2] = ['«', '»'];
 #[derive(Clone, Copy, Debug, Default, Deserialize, Hash, PartialEq, Eq, PartialOrd, Ord)]
 #[serde(rename_all = "lowercase")]
 pub enum Program {
-    /// That of the drive.
+    /// Program of the drive.
     #[default]
     Drive,
-    /// That of comms.
+    /// Program of comms.
     Comms,
 }
 

@@ -71,7 +71,7 @@ pub struct Step {
 /// End of a phase as a solver found it.
 #[derive(Clone, Copy, Debug)]
 pub struct PhaseEnd {
-    /// When, s.
+    /// Time of the end, s.
     pub time_s: f64,
     /// The state there.
     pub y: [f64; 2],

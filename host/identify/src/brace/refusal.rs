@@ -41,7 +41,7 @@ pub enum Refusal {
          after that is where it was: repair it and record again"
     )]
     Jump {
-        /// When, s from the recording's start.
+        /// Time, s from the recording's start.
         time_s: f64,
         /// Size of the jump, °.
         degrees: f64,
@@ -52,7 +52,7 @@ pub enum Refusal {
          is lost or its counter saturates; check the encoder's cable"
     )]
     Frozen {
-        /// When, s from the recording's start.
+        /// Time, s from the recording's start.
         time_s: f64,
         /// The speed before, °/s.
         speed_deg_s: f64,
@@ -139,7 +139,7 @@ pub enum Refusal {
         "{what} would be {value:.4} {unit}, which no brace has: check mass, lever and inertia of the weight"
     )]
     Impossible {
-        /// Which.
+        /// Name of the quantity.
         what: &'static str,
         /// Its value.
         value: f64,

@@ -46,7 +46,7 @@ pub(crate) struct Drawn {
     pub(crate) also_deg: Vec<f64>,
 }
 
-/// Those of the symptom with this name, over these angles, deg, with the catches that
+/// Limits of the symptom with this name, over these angles, deg, with the catches that
 /// there were; nothing if its settings are not known.
 pub(crate) fn of(settings: &EffectSettings, effect: &str, ends: (f64, f64), met: &[Met]) -> Drawn {
     let mut drawn = Drawn::default();

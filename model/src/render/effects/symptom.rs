@@ -83,7 +83,7 @@ impl Word {
 pub struct Change<F> {
     /// Kind of the event.
     pub word: Word,
-    /// When: the share of the travel, 0 to 1.
+    /// Share of the travel at which it happened, 0 to 1.
     pub fraction: F,
     /// Torque just before, N·m; like what follows, against growing angle.
     pub before_nm: F,

@@ -94,7 +94,7 @@ macro_rules! effects {
                 }
             }
 
-            /// Those of the effect at a place of the table, alone.
+            /// Returns the settings of the effect at a place of the table, alone.
             #[must_use]
             pub fn only(&self, place: usize) -> Self {
                 let mut here = (0..).map(|other| other == place);

@@ -47,7 +47,7 @@ enum Stage {
 }
 
 impl LeadIn {
-    /// That of a scene whose leg begins straight. `None` where nothing leads: the motion
+    /// Returns the lead-in of a scene whose leg begins straight. `None` where nothing leads: the motion
     /// begins at 0°, or nobody holds the leg.
     pub(super) fn of(scene: &Scene) -> Option<Self> {
         let start = scene.start();

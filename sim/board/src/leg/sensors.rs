@@ -19,9 +19,9 @@ pub enum EncoderWiring {
 /// and a converter of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CurrentPath {
-    /// That of the current loop.
+    /// Path to the current loop.
     Sensor,
-    /// That of the monitor, whose amplifier the comparator sees, too.
+    /// Path to the monitor, whose amplifier the comparator sees, too.
     Monitor,
 }
 

@@ -42,12 +42,13 @@ pub(crate) struct Input {
     function: Mode,
 }
 
-/// Those of both advanced timers.
+/// Brake input of TIM1.
 pub(crate) const TIM1: Input = Input {
     timer: "TIM1",
     pin: Pin::new('B', 12),
     function: Mode::Alternate(1),
 };
+/// Brake input of TIM8.
 pub(crate) const TIM8: Input = Input {
     timer: "TIM8",
     pin: Pin::new('A', 6),

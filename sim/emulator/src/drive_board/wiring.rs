@@ -51,7 +51,7 @@ const CONVERTED: [(u32, Pin); 6] = [
     (3, COIL),
 ];
 
-/// Those of the currents.
+/// Converters of the currents.
 const CURRENTS: [u32; 2] = [1, 2];
 
 /// The encoder's counter.

@@ -157,7 +157,7 @@ fn an_interrupt_without_a_handler_leaves_the_stack() {
     /// Registers of the core that enable an interrupt, and request it.
     const ENABLE: u32 = 0xe000_e100;
     const REQUEST: u32 = 0xe000_e200;
-    /// That of the tamper pin, which nobody uses.
+    /// Number of the tamper pin's interrupt, which nobody uses.
     const TAMPER: u16 = 2;
     let Some(mut host) = armed() else { return };
     let mcu = host.board.mcu_mut();

@@ -26,7 +26,7 @@ pub struct Lead {
     kinetic_nm: f64,
     rounding: f64,
     step_s: f64,
-    /// Every how many steps it looks.
+    /// Number of steps from one look to the next.
     stride: u32,
     left: u32,
     /// Time in slips with the shaft behind, s.

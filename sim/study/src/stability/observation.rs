@@ -75,7 +75,7 @@ pub(super) struct ActuatorSeen {
     pub(super) last_v: f64,
 }
 
-/// That of a part of the run.
+/// Observation of the actuator over a part of the run.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ActuatorPart {
     pub(super) ticks: f64,
@@ -99,7 +99,7 @@ pub(super) struct ActuatorPart {
 pub(super) struct SymptomsSeen {
     /// Their own events.
     pub(super) events: Vec<SymptomEvent>,
-    /// Those of the reference, if it solves the input.
+    /// Events of the reference, if it solves the input.
     pub(super) truth: Option<Vec<SymptomEvent>>,
     /// Largest error of the torque at the end of a step, if the reference solves the
     /// input, N·m.

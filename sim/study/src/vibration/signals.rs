@@ -7,7 +7,7 @@ use crepitus_model::Real;
 use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns, step_count};
 use crepitus_scene::{Scene, Walk};
 
-/// Those of one run, once it has settled.
+/// Signals of one run, once it has settled.
 #[derive(Clone, Debug)]
 pub(super) struct Kept {
     /// Time from one value to the next, s.

@@ -25,7 +25,7 @@ type Page = [Decoded; PAGE];
 /// The code that has been executed so far, decoded.
 pub(super) struct Code {
     flash: Arc<Flash>,
-    /// That of the content which is decoded.
+    /// Version of the content which is decoded.
     version: u64,
     pages: Vec<Option<Box<Page>>>,
 }

@@ -38,7 +38,7 @@ pub struct ImplicitEuler {
 /// One of the two.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Method {
-    /// Which.
+    /// Solver of the method.
     pub solver: Solver,
     /// Torque, N·m, against time, s.
     pub torque_nm: Line,

@@ -36,7 +36,7 @@ pub struct RestickRules {
 /// One of the two.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    /// Which.
+    /// Convention with this rule.
     pub convention: Convention,
     /// Torque, N·m, against time, s.
     pub torque_nm: Line,
