@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_has_read_the_file_gets_in() {
+    fn a_program_that_has_read_the_file_gets_in() {
         let (_folder, path, listener) = listening();
         let inside = thread::spawn(move || {
             let mut stream = arrival(|| listener.accept()).enter().unwrap();

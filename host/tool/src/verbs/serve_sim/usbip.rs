@@ -48,7 +48,7 @@ pub(super) fn serve(
     interrupt::listen();
     if !address.ip().to_canonical().is_loopback() {
         warn(format!(
-            "USB/IP has no authentication and no encryption: whoever can reach {address} can use the \
+            "USB/IP has no authentication and no encryption: any program that reaches {address} can use the \
              device and read what it sends"
         ));
     }

@@ -86,7 +86,7 @@ pub(super) fn returned_by_muscles() -> Case {
         id: "H73",
         name: "tank",
         title: "A hand that goes with a reflex and with the beats of clonus",
-        hard: "Both push. A reflex gives energy above 3.7 Hz, beats to whoever moves with them. One tank of 0.2 J with 0.04 W pays for \
+        hard: "Both push. A reflex gives energy above 3.7 Hz, beats to a hand that moves with them. One tank of 0.2 J with 0.04 W pays for \
                both, so that no hand gets more than 0.28 J in any 2 s, however late the torque is.",
         source: "docs/symptoms.md, Sum, tank and limits",
         long: false,
