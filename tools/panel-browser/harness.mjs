@@ -82,6 +82,17 @@ export async function browserOf() {
   return browser;
 }
 
+/**
+ * Repeats what is timed, in ms, until it is below the limit, five times at most; returns the least. Times include
+ * the browser's own work, which on a busy computer takes as long again.
+ */
+export async function quickest(limit, timed) {
+  const all = [];
+  while (all.length < 5 && !(Math.min(...all) < limit)) all.push(await timed());
+  console.log(`${all.map(Math.round)} ms of ${limit}`);
+  return Math.min(...all);
+}
+
 /** A page of its own context, with its errors in `page.problems`. */
 export async function openPage(link, options = {}) {
   const context = await (await browserOf()).newContext({ viewport: { width: 1280, height: 900 }, ...options });
