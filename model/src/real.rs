@@ -62,7 +62,7 @@ pub trait Real:
     /// far above the subnormal numbers that a decay would otherwise end in,
     /// which some processors compute with slowly.
     const AT_REST: Self;
-    /// Whether a number has 24 bits: short series do.
+    /// True for f32, whose 24 bits need only short series.
     const IS_SINGLE: bool;
     /// Name in scene files: `f32` or `f64`.
     const NAME: &'static str;

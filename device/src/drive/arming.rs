@@ -89,7 +89,7 @@ pub struct Seen {
     pub raw_a: Option<(f32, f32)>,
     /// The drive's enable line, as read back.
     pub line_is_on: bool,
-    /// Whether the enable line of comms is on, at its gate.
+    /// Level of the enable line of comms, read at its gate: true if on.
     pub comms_line_is_on: bool,
     /// The encoder's count.
     pub count: i32,

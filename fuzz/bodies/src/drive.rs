@@ -111,7 +111,7 @@ struct Bench {
     has_restarted: bool,
     received: u64,
     first_tick: u64,
-    /// Whether there was torque, for each tick since `first_tick`.
+    /// Ticks since `first_tick`: true with torque.
     energised: Vec<bool>,
     sequence: u16,
     /// Words of its record of a crash.

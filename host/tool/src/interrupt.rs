@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 
 static REQUESTED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
-/// Whether a request was carried out and forgotten.
+/// Set once a stop request was carried out, when [`forget`] resets it.
 static WAS_CARRIED_OUT: AtomicBool = AtomicBool::new(false);
 
 /// Installs the handlers, which set a flag.

@@ -83,7 +83,7 @@ struct Stage {
     spec: &'static EffectSpec,
     /// Its place in the model's table.
     place: usize,
-    /// Whether what it adds is torque of the motor.
+    /// True if its contribution is part of the motor's torque.
     acts_on_joint: bool,
     added_nm: f64,
     work_j: f64,

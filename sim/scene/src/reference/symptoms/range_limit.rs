@@ -35,7 +35,7 @@ pub(super) struct Wall {
     /// Tcap, N·m.
     cap: f64,
     is_in: bool,
-    /// Whether the limit is at the cap, while the torque is at the limit.
+    /// True if the torque is at its limit and that limit is the cap.
     capped: bool,
     play: Play,
 }
