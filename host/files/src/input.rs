@@ -1,0 +1,1 @@
+//! Files that are read: regular ones up to a stated size.

@@ -1,0 +1,12 @@
+//! # Files
+//!
+//! The one place that opens files of other people and writes files beside theirs:
+//!
+//! ```text
+//! a path ──> input   a regular file up to a stated size, or an error that says what it is
+//! a path <── output  a folder that this program owns: nothing foreign is replaced or removed
+//! ```
+#![forbid(unsafe_code)]
+
+pub mod input;
+pub mod output;
