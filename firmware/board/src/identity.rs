@@ -13,7 +13,7 @@ const SEAL_AT: usize = 0x1c;
 
 /// The identity in a hello, and the self-test. The checksum covers the
 /// first 512 bytes of flash, with the seal as 0, then code, constants and initial
-/// values: that of `crepitus-image seal`. Takes a few milliseconds.
+/// values: that of `crepitus-seal`. Takes a few milliseconds.
 pub fn identity(role: Role, start: &Start, option_bytes: u32) -> (Identity, SelfTest) {
     let vectors = raw::vectors();
     let (head, rest) = vectors.split_at(SEAL_AT);

@@ -22,7 +22,6 @@
 //! | loops, and endless loops | [`loops`] |
 //! | the sum of the worst stack | [`stack`] |
 //! | functions that mean a panic | [`panics`] |
-//! | the checksum that an image is sealed with | [`seal`] |
 //!
 //! **Limits.** It analyses control flow, not values: whether a loop keeps the
 //! bound of the budget is for the reader of the budget file to judge, and so
@@ -52,7 +51,6 @@ pub mod panics;
 pub mod program;
 pub mod reach;
 pub mod report;
-pub mod seal;
 pub mod stack;
 pub mod sweep;
 pub mod text;

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Examine firmware images: sizes, load addresses, the worst stack, and what
-/// interrupts can reach; and seal them.
+/// interrupts can reach.
 ///
 /// Exit codes: 0 all is well, 1 a check fails, 2 bad usage or bad input.
 #[derive(Debug, Parser)]
@@ -17,8 +17,7 @@ Examples:
   crepitus-image check                            every image of firmware/budget.toml
   crepitus-image check drive --elf drive=a.elf    one image, built elsewhere
   crepitus-image check --bless                    record the sizes as they are now
-  crepitus-image look a.elf --root TIM3           what one function reaches, without a budget
-  crepitus-image seal target/drive                before it is flashed; `cargo run` in firmware/ does it")]
+  crepitus-image look a.elf --root TIM3           what one function reaches, without a budget")]
 struct Cli {
     /// Print JSON for machines instead of text for people.
     #[arg(long, global = true)]
@@ -34,8 +33,6 @@ enum Verb {
     Check(CheckArguments),
     /// List what functions of an image reach: calls, frames, loops, panics.
     Look(LookArguments),
-    /// Seal images: what flash holds is compared with the seal at every start.
-    Seal(SealArguments),
 }
 
 #[derive(Debug, Args)]
@@ -62,13 +59,6 @@ struct LookArguments {
     roots: Vec<String>,
 }
 
-#[derive(Debug, Args)]
-struct SealArguments {
-    /// The images, which are changed in their place.
-    #[arg(required = true)]
-    elves: Vec<PathBuf>,
-}
-
 fn image_and_file(text: &str) -> Result<(String, PathBuf), String> {
     match text.split_once('=') {
         Some((image, file)) if !image.is_empty() && !file.is_empty() => {
@@ -83,7 +73,6 @@ fn main() -> ExitCode {
     let outcome = match &cli.verb {
         Verb::Check(arguments) => run::check(arguments, cli.json),
         Verb::Look(arguments) => run::look(arguments, cli.json),
-        Verb::Seal(arguments) => run::seal(&arguments.elves),
     };
     match outcome {
         Ok(true) => ExitCode::SUCCESS,

@@ -131,18 +131,3 @@ fn print(text: &str) -> Result<(), String> {
     let done = out.write_all(text.as_bytes()).and_then(|()| out.flush());
     done.map_err(|e| format!("standard output: {e}"))
 }
-
-/// `seal`: every file, in its place.
-pub(crate) fn seal(elves: &[PathBuf]) -> Result<bool, String> {
-    for path in elves {
-        let mut elf = std::fs::read(path).map_err(|e| at(path, e))?;
-        let seal =
-            crepitus_image::seal::seal(&mut elf).map_err(|e| format!("{}: {e}", path.display()))?;
-        // A file that is half written must not be flashed.
-        let part = path.with_extension("part");
-        std::fs::write(&part, &elf).map_err(|e| at(&part, e))?;
-        std::fs::rename(&part, path).map_err(|e| at(path, e))?;
-        print(&format!("{}: sealed with {seal:08x}", path.display()))?;
-    }
-    Ok(true)
-}

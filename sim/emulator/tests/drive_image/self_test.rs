@@ -13,7 +13,7 @@ fn sealed() -> Option<Image> {
     image()?;
     let path = path(Program::Drive).expect("it was read");
     let mut elf = std::fs::read(path).expect("a file");
-    crepitus_image::seal::seal(&mut elf).expect("a seal");
+    crepitus_firmware_seal::seal(&mut elf).expect("a seal");
     Some(Image::of_elf(&elf).expect("an image"))
 }
 
