@@ -259,8 +259,16 @@ fn rows(folder: &Path, name: &str) -> Vec<HashMap<String, String>> {
     lines.into_iter().map(named).collect()
 }
 
+/// In the long mode, `CREPITUS_LONG=1`: the whole map takes a minute. Single cells and what is predicted of
+/// them are tested in `sim/study`.
 #[test]
 fn the_map_of_stiffness_keeps_what_theory_promises() {
+    let output = run(&["stability", "--coupled", "--case", "H05"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("--coupled"), "{}", stderr(&output));
+    if std::env::var_os("CREPITUS_LONG").is_none() {
+        return;
+    }
     let home = tempfile::tempdir().unwrap();
     let out = home.path().join("map");
     let output = stability(&out, &["--coupled", "--pictures"]);
@@ -332,8 +340,4 @@ fn the_map_of_stiffness_keeps_what_theory_promises() {
     ]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert!(summary(&ran)["plant_energy"]["residual_relative"].is_number());
-
-    let output = run(&["stability", "--coupled", "--case", "H05"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("--coupled"), "{}", stderr(&output));
 }

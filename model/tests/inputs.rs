@@ -13,7 +13,8 @@ mod support;
 use crepitus_model::render::input_check::{CATCH_UP_TICKS, InputLimits};
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
-    Convention, EVENTS_PER_STEP, Event, Guarded, Phase, Real, Sample, Settings, ShaftStep, StickSlip,
+    Convention, EVENTS_PER_STEP, Event, Guarded, Phase, Real, Sample, Settings, ShaftStep,
+    StickSlip,
 };
 use proptest::prelude::*;
 

@@ -10,6 +10,7 @@ use braces::{Truth, WEIGHED};
 use crepitus_identify::brace::{
     Brace, Quantity, QuantityResult, Recording, Refusal, Sample, TORQUE_DEVIATION, Weight, identify,
 };
+use std::sync::LazyLock;
 
 const TRUTH: Truth = Truth::NOMINAL;
 
@@ -24,9 +25,16 @@ fn refused(recording: Recording) -> Refusal {
     refusal
 }
 
-/// A good recording, to be spoilt.
+/// A good recording, to be spoilt; simulated once.
 fn good() -> Recording {
-    TRUTH.recorded(false)
+    static GOOD: LazyLock<Recording> = LazyLock::new(|| TRUTH.recorded(false));
+    GOOD.clone()
+}
+
+/// A good one with the motor armed.
+fn good_armed() -> Recording {
+    static GOOD: LazyLock<Recording> = LazyLock::new(|| TRUTH.recorded(true));
+    GOOD.clone()
 }
 
 #[test]
@@ -199,7 +207,7 @@ fn a_leg_in_the_brace() {
 
 #[test]
 fn a_wrong_weight() {
-    let recordings = [TRUTH.recorded(false), TRUTH.recorded(true)];
+    let recordings = [good(), good_armed()];
     let with = |mass: f64, lever: f64| {
         let inertia = TRUTH.inertia_kg_m2() * mass * lever * lever;
         let (mass, lever) = (TRUTH.mass_kg * mass, TRUTH.lever_m * lever);
@@ -243,7 +251,7 @@ fn a_wrong_weight() {
 
 #[test]
 fn a_motor_with_reversed_polarity() {
-    let mut it = TRUTH.recorded(true);
+    let mut it = good_armed();
     for sample in &mut it.samples {
         sample.current_a = sample.current_a.map(|a| -a);
     }

@@ -40,8 +40,13 @@ fn all(truths: &[Truth]) -> Vec<(Recording, Brace)> {
     })
 }
 
+/// In the long mode, `CREPITUS_LONG=1`: twenty braces take a minute, and the page has their numbers.
+/// Those of `second_simulation` are identified always.
 #[test]
 fn values_of_hidden_braces_are_within_their_intervals() {
+    if std::env::var_os("CREPITUS_LONG").is_none() {
+        return;
+    }
     let mut random = fastrand::Rng::with_seed(2024);
     let truths: Vec<Truth> = (0..DEVICES).map(|_| Truth::hidden(&mut random)).collect();
     let braces = truths.iter().zip(all(&truths)).enumerate();

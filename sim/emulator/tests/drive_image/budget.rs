@@ -1,7 +1,7 @@
 //! Budget of a tick, in cycles of 8,400: modelled with 0 wait states, and
 //! with the modelled flash.
 
-use crate::host::{Flash, Host, examination, image, scene};
+use crate::host::{Flash, Host, examination, image, is_long, judged, scene};
 use crepitus_emulator::Image;
 use crepitus_emulator::cycles::Cycles;
 use crepitus_protocol::Revision;
@@ -71,7 +71,7 @@ pub(crate) fn percent(cycles: u64) -> f64 {
 #[test]
 fn a_tick_with_crepitus_and_a_ringing_bone_takes_its_share_at_most() {
     let Some(image) = image() else { return };
-    for limits in LIMITS {
+    for limits in judged(LIMITS) {
         let mut host = under_torque(&image, &scene("[effects.bone-shaping]"), limits.flash);
         let mut cycles = Cycles::default();
         host.board.watch(TICKS, &mut cycles);
@@ -89,9 +89,8 @@ fn a_tick_with_crepitus_and_a_ringing_bone_takes_its_share_at_most() {
 #[test]
 fn a_tick_with_a_commit_takes_its_share_at_most() {
     let Some(image) = image() else { return };
-    let is_long = std::env::var_os("CREPITUS_LONG").is_some();
-    let commits = if is_long { MANY_COMMITS } else { COMMITS };
-    for limits in LIMITS {
+    let commits = if is_long() { MANY_COMMITS } else { COMMITS };
+    for limits in judged(LIMITS) {
         let mut host = under_torque(&image, &scene("[effects.bone-shaping]"), limits.flash);
         let mut worst = 0;
         for commit in 0..commits {
@@ -144,7 +143,7 @@ fn worst_while_committing(host: &mut Host, added_nm: f64) -> u64 {
 #[test]
 fn a_tick_with_cold_caches_takes_its_share_at_most() {
     let Some(image) = image() else { return };
-    for limits in LIMITS {
+    for limits in judged(LIMITS) {
         let mut host = under_torque(&image, &scene("[effects.bone-shaping]"), limits.flash);
         let mut worst = 0;
         for _ in 0..200 {
@@ -166,7 +165,7 @@ fn a_tick_with_cold_caches_takes_its_share_at_most() {
 #[test]
 fn rendering_crepitus_takes_its_share_at_most() {
     let Some(image) = image() else { return };
-    for limits in LIMITS {
+    for limits in judged(LIMITS) {
         let mut host = under_torque(&image, &examination(), limits.flash);
         let mut cycles = Cycles::default();
         host.board.watch(TICKS, &mut cycles);

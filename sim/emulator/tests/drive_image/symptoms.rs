@@ -2,7 +2,7 @@
 //! moved so that everything happens to them.
 
 use crate::budget::{RENDER, TICK_CYCLES, percent};
-use crate::host::{Flash, Host, image, scene_of};
+use crate::host::{Flash, Host, image, is_long, judged, scene_of};
 use crepitus_board::values::values;
 use crepitus_emulator::cycles::Cycles;
 use crepitus_emulator::mcu::{Step, Watch};
@@ -347,7 +347,7 @@ fn a_tick_with_any_two_symptoms_takes_its_share_at_most() {
     };
     let every =
         (0..SYMPTOMS).flat_map(|first| (first + 1..SYMPTOMS).map(move |next| (first, next)));
-    let pairs: Vec<(usize, usize)> = if std::env::var_os("CREPITUS_LONG").is_some() {
+    let pairs: Vec<(usize, usize)> = if is_long() {
         every.collect()
     } else {
         PAIRS.to_vec()
@@ -370,7 +370,7 @@ fn a_tick_with_any_two_symptoms_takes_its_share_at_most() {
 
 #[test]
 fn a_tick_with_all_symptoms_takes_its_share_at_most() {
-    for limits in ALL {
+    for limits in judged(ALL) {
         let Some(mut host) = armed(&[], limits.flash) else {
             return;
         };

@@ -1,6 +1,6 @@
 //! The three tasks: which interrupts which, and that none is late.
 
-use crate::host::{Flash, Host, examination, image};
+use crate::host::{Flash, Host, examination, image, judged};
 use crepitus_emulator::cycles::Cycles;
 use crepitus_emulator::{Mcu, Time};
 use crepitus_protocol::telemetry::SampleFlags;
@@ -31,7 +31,7 @@ fn priority(exception: u16) -> u8 {
 #[test]
 fn a_task_is_interrupted_by_higher_ones_only_and_every_tick_has_all() {
     let Some(image) = image() else { return };
-    for flash in Flash::BOTH {
+    for flash in judged(Flash::BOTH) {
         let mut host = Host::timed(&image, &examination(), &[], flash);
         host.arm();
         host.run_until_torque();
@@ -131,7 +131,7 @@ fn an_interrupt_of_the_idle_loop_saves_no_registers_of_the_fpu() {
 #[test]
 fn no_tick_is_late_under_torque() {
     let Some(image) = image() else { return };
-    for flash in Flash::BOTH {
+    for flash in judged(Flash::BOTH) {
         let mut host = Host::timed(&image, &examination(), &[], flash);
         host.arm();
         host.run_until_torque();
@@ -149,7 +149,7 @@ fn tasks_begin_when_they_should() {
     const MIDDLE: u32 = 0x4000_0410;
     const BEGIN: u32 = 0x4000_0810;
     let Some(image) = image() else { return };
-    for flash in Flash::BOTH {
+    for flash in judged(Flash::BOTH) {
         let mut host = Host::timed(&image, &examination(), &[], flash);
         host.arm();
         host.run_until_torque();
