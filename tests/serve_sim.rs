@@ -10,11 +10,11 @@ use std::fs;
 use std::io::Read;
 use std::os::fd::AsFd;
 use std::os::unix::fs::symlink;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
-use support::served::{Served, signal, until};
+use support::served::{Served, ended, signal, until};
 use support::{
     HALF_A_SECOND, check_books, crepitus, length, recording, repository, rows, stderr, stdout,
 };
@@ -225,6 +225,42 @@ fn a_client_in_python_communicates_with_it() {
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", stderr(&output));
+    let got = stdout(&served.run(&["params", "get", "crepitus.static_torque_nm"]));
+    assert!(got.contains("0.45"), "{got}");
+}
+
+/// … and to run beside a program that has the port open.
+#[test]
+fn a_client_in_python_runs_beside_a_recording() {
+    let python = Command::new("python3").arg("--version").output();
+    if !python.is_ok_and(|output| output.status.success()) {
+        eprintln!("left out: there is no python3");
+        return;
+    }
+    let served = Served::new();
+    let file = served.home.path().join("beside.crepitus");
+    let mut recording = served
+        .command(&["record", "--for", "4s"])
+        .arg(&file)
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let folder = served.home.path().join("crepitus/shared");
+    let is_socket = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "socket");
+    let socket = (0..200)
+        .find_map(|_| {
+            sleep(Duration::from_millis(20));
+            let mut entries = fs::read_dir(&folder).ok()?.flatten();
+            entries.find_map(|entry| Some(entry.path()).filter(is_socket))
+        })
+        .expect("a socket");
+    let output = Command::new("python3")
+        .arg(repository().join("docs/examples/client.py"))
+        .arg(&socket)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(ended(&mut recording).success());
     let got = stdout(&served.run(&["params", "get", "crepitus.static_torque_nm"]));
     assert!(got.contains("0.45"), "{got}");
 }

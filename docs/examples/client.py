@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # The smallest client of Crepitus. All that it knows stands in docs/protocol.md.
 #
-#     python3 docs/examples/client.py /dev/ttyACM0 [--arm]        (or - for stdin and stdout)
+#     python3 docs/examples/client.py /dev/ttyACM0 [--arm]        (or - for stdin and stdout, or the socket of a
+#                                                                  program that has the port open)
 #
 # It says hello, opens a session, sets crepitus.static_torque_nm to 0.45, receives
 # 200 blocks of samples, and checks that each sample was received or is reported as
 # dropped. With --arm the device is armed meanwhile, with the angle's zero here.
-import itertools, os, select, struct, sys, tty, zlib
+import itertools, os, select, socket, stat, struct, sys, tty, zlib
 
 # --- Framing ---
 
@@ -45,7 +46,13 @@ def request(what):
     refused, answer = next(reply), next(reply)
     return reply if not refused else sys.exit(f"refused: {answer} {bytes(reply).hex()}")
 
-source, sink = (0, 1) if sys.argv[1] == "-" else (os.open(sys.argv[1], os.O_RDWR | os.O_NOCTTY),) * 2
+def opened(path):
+    if not stat.S_ISSOCK(os.stat(path).st_mode):
+        return os.open(path, os.O_RDWR | os.O_NOCTTY)
+    (hub := socket.socket(socket.AF_UNIX)).connect(path)
+    return hub.detach()
+
+source, sink = (0, 1) if sys.argv[1] == "-" else (opened(sys.argv[1]),) * 2
 os.isatty(source) and tty.setraw(source)
 bodies, numbers, session, nonce = receive(), itertools.count(1), varint(int.from_bytes(os.urandom(4), "little")), b"\0"
 
@@ -73,8 +80,10 @@ arms = "--arm" in sys.argv and [request(b"\x06"), request(b"\x07")] is not None
 first_tick, dropped_before = (unvarint(answer) for answer in [request(b"\x0a")] * 2)
 for number in range(1, 201):
     arms and number % 50 == 1 and send(b"Q" + tag + session + nonce + varint(next(numbers)) + b"\0")  # Renews the lease.
-    block = wait_for(b"T" + tag)
-    sequence, tick, revision, dropped = (unvarint(block) for _ in range(4))
+    tick = 0
+    while tick < first_tick:  # Blocks of before, for another program's subscription.
+        block = wait_for(b"T" + tag)
+        sequence, tick, revision, dropped = (unvarint(block) for _ in range(4))
     assert tick + 20 - first_tick == 20 * number + dropped - dropped_before, "samples are missing from the books"
 print("count %d, model %g N·m, torque %g N·m, %d mA, flags %#06x" % struct.unpack("<iffhH", bytes(block)[-56:-40]))
 arms and request(b"\x08")
