@@ -95,7 +95,7 @@ pub(crate) struct Arguments {
     format: Format,
 
     /// Run part I of N; `--merge` makes the table when all are done.
-    #[arg(long, value_name = "I/N", value_parser = shard)]
+    #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
 
     /// Also write the trace of each run, as traces/POINT.csv.
@@ -123,16 +123,6 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = ["vary", "points", "latin", "sobol", "shard",
           "estimate", "out", "traces", "set", "as_device", "force"])]
     merge: Option<Vec<PathBuf>>,
-}
-
-/// Parses `I/N`.
-fn shard(text: &str) -> Result<Shard, String> {
-    let parts = text.split_once('/');
-    let number = |text: &str| text.trim().parse::<u64>().ok();
-    match parts.and_then(|(i, n)| Some((number(i)?, number(n)?))) {
-        Some((i, n)) => Shard::new(i, n),
-        None => Err("expected I/N, for example 3/16".to_owned()),
-    }
 }
 
 /// Parses a number of threads.
