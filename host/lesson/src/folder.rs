@@ -16,6 +16,7 @@
 use crate::finding::Finding;
 use crate::report::{Text, report};
 use crate::session::{Session, SessionError};
+use crepitus_files::output::temporary_in;
 use crepitus_scene::preset::Level;
 use std::fs;
 use std::io::{self, Write};
@@ -88,7 +89,10 @@ impl SessionFolder {
         let folder = Self { path };
         if let Err(error) = folder.save(session) {
             // The error to report is that of the files.
-            let _ = fs::remove_dir_all(&folder.path);
+            for name in [SESSION, ANSWERS, NOTES] {
+                let _ = fs::remove_file(folder.path.join(name));
+            }
+            let _ = fs::remove_dir(&folder.path);
             return Err(error);
         }
         Ok(folder)
@@ -150,7 +154,7 @@ impl SessionFolder {
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
         let path = self.path.join(name);
         let put = || -> io::Result<()> {
-            let mut file = crate::new_file::in_folder(&self.path)?;
+            let mut file = temporary_in(&self.path)?;
             file.write_all(bytes)?;
             file.as_file().sync_all()?;
             file.persist(&path)?;

@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt;
 use std::ops::Range;
-use std::path::PathBuf;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 /// Plan of a sweep. Equal plans have equal rows, on any computer.
@@ -169,7 +169,10 @@ impl Plan {
     pub fn inputs(&self) -> Vec<PathBuf> {
         let scene = self.source.scene(&self.overrides).ok();
         let data = scene.and_then(|scene| scene.data).map(|data| data.file);
-        [Some(self.source.file.clone()), data].into_iter().flatten().collect()
+        [Some(self.source.file.clone()), data]
+            .into_iter()
+            .flatten()
+            .collect()
     }
 
     /// Runs a point by `run`. A failed run gives a row with its reason.

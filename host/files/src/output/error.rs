@@ -22,6 +22,14 @@ pub enum OutputError {
         /// The folder holds a list of this program's files.
         has_list: bool,
     },
+    /// A single file that exists, or cannot be one.
+    #[error("{} {}", path.display(), Exists(reason))]
+    Exists {
+        /// The path.
+        path: PathBuf,
+        /// Reason why it is not replaced.
+        reason: Reason,
+    },
     /// A path at which no folder can be.
     #[error("{}: {why}", path.display())]
     NoFolder {
@@ -48,6 +56,7 @@ impl OutputError {
     pub fn yields_to_force(&self) -> bool {
         match self {
             Self::InTheWay { names, .. } => names.iter().all(|name| name.reason.yields_to_force()),
+            Self::Exists { reason, .. } => reason.yields_to_force(),
             _ => false,
         }
     }
@@ -103,10 +112,21 @@ impl fmt::Display for Reason {
             Self::Link => "a symbolic link",
             Self::By(verb) => return write!(f, "written by `{verb}`"),
             Self::OtherVersion => "a list of files of another version of crepitus",
-            Self::Folder => "a folder that crepitus did not make",
+            Self::Folder => "a folder that is not crepitus's",
             Self::Special => "neither a file nor a folder",
             Self::Input => "an input, which is never replaced",
         })
+    }
+}
+
+struct Exists<'r>(&'r Reason);
+
+impl fmt::Display for Exists<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Reason::Foreign => f.write_str("already exists"),
+            reason => write!(f, "already exists: {reason}"),
+        }
     }
 }
 

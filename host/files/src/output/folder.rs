@@ -148,8 +148,9 @@ impl Folder {
         fs::create_dir_all(&self.target).map_err(&failed)?;
         let _lock = lock_folder(&self.target);
         let mut folder = OwnedFolder::open(&self.target, self.claim.clone())?;
-        let hashed =
-            |(name, path)| Ok((name, Hashed::of(TempPath::try_from_path::<PathBuf>(path)?)?));
+        let hashed = |(name, path): (String, PathBuf)| {
+            Ok((name, Hashed::of(TempPath::try_from_path(path)?)?))
+        };
         let files = self.all().map_err(&failed)?.into_iter().map(hashed);
         let files: io::Result<Vec<_>> = files.collect();
         folder.put_all(files.map_err(&failed)?)?;

@@ -125,7 +125,7 @@ impl Marker {
             for written in all {
                 if written.by != by {
                     by = &written.by;
-                    text += &format!("{BY}{by}\n");
+                    text.extend([BY, by, "\n"]);
                 }
                 text += &line(name, &written.sha256);
             }

@@ -2,7 +2,7 @@
 
 use super::marker::kind;
 use super::owned::failed;
-use super::{InTheWay, Inputs, OutputError, Reason, folder_of, sync_folder_of, temporary_in};
+use super::{Inputs, OutputError, Reason, folder_of, sync_folder_of, temporary_in};
 use std::fs::{self, File};
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -109,13 +109,8 @@ fn in_the_way(path: &Path, force: bool, inputs: &Inputs) -> Option<Reason> {
 }
 
 fn error_of(path: &Path, reason: Reason) -> OutputError {
-    let name = path.file_name().unwrap_or(path.as_os_str());
-    OutputError::InTheWay {
-        folder: folder_of(path).to_owned(),
-        names: vec![InTheWay {
-            name: name.to_string_lossy().into_owned(),
-            reason,
-        }],
-        has_list: true,
+    OutputError::Exists {
+        path: path.to_owned(),
+        reason,
     }
 }

@@ -2,6 +2,7 @@
 
 use super::marker::{self, Found, Marker, is_plain, kind};
 use super::{Claim, InTheWay, MARKER, OutputError, Reason, TEMPORARY, sha256, temporary_in};
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -15,6 +16,8 @@ pub struct OwnedFolder {
     marker: Marker,
     /// The folder has a list. Without one nothing in it is this program's.
     has_list: bool,
+    /// Names since the list was compacted: true if a file was written, false if it was removed.
+    changed: BTreeMap<String, bool>,
 }
 
 /// State of a name in a folder.
@@ -81,6 +84,7 @@ impl OwnedFolder {
             claim,
             marker,
             has_list,
+            changed: BTreeMap::new(),
         })
     }
 
@@ -106,13 +110,8 @@ impl OwnedFolder {
                 made => made.map_err(failed(&path, "cannot be created"))?,
             }
         }
-        match self.subfolder_state(name)? {
-            State::InTheWay(reason) => Err(self.in_the_way(vec![InTheWay {
-                name: name.to_owned(),
-                reason,
-            }])),
-            State::Own | State::Free => Self::open(&path, self.claim.clone()),
-        }
+        self.check_subfolder(name)?;
+        Self::open(&path, self.claim.clone())
     }
 
     /// Returns the state of a name that is to be a folder: one of this program's has a list.
@@ -136,6 +135,20 @@ impl OwnedFolder {
             Some(reason) => State::InTheWay(reason),
             None => State::InTheWay(Reason::Foreign),
         })
+    }
+
+    /// Checks that a folder of this name can be made, or is this program's.
+    ///
+    /// # Errors
+    /// [`OutputError::InTheWay`].
+    pub fn check_subfolder(&self, name: &str) -> Result<(), OutputError> {
+        match self.subfolder_state(name)? {
+            State::InTheWay(reason) => Err(self.in_the_way(vec![InTheWay {
+                name: name.to_owned(),
+                reason,
+            }])),
+            State::Own | State::Free => Ok(()),
+        }
     }
 
     /// Returns the path.
@@ -277,17 +290,30 @@ impl OwnedFolder {
             }]),
             _ => failed(&path, WRITING)(error.error),
         })?;
-        self.marker.keep_last(name);
+        self.changed.insert(name.to_owned(), true);
         Ok(())
     }
 
-    /// Writes the list without what has been replaced.
+    /// Writes the list without what has been replaced or removed; lines that another run of this program
+    /// has added meanwhile stay. The caller has locked the folder, if several may write.
     ///
     /// # Errors
     /// If it cannot be written.
     pub fn compact(&mut self) -> Result<(), OutputError> {
-        let write = self.marker.write(&self.folder);
-        write.map_err(failed(&self.folder.join(MARKER), WRITING))
+        let list = self.folder.join(MARKER);
+        if let Found::Own(marker) = Marker::read(&self.folder).map_err(failed(&list, READING))? {
+            self.marker = marker;
+        }
+        for (name, is_written) in std::mem::take(&mut self.changed) {
+            if is_written {
+                self.marker.keep_last(&name);
+            } else {
+                self.marker.forget(&name);
+            }
+        }
+        self.marker
+            .write(&self.folder)
+            .map_err(failed(&list, WRITING))
     }
 
     /// Removes a file, if it is this program's own; returns whether the name is free then.
@@ -304,6 +330,7 @@ impl OwnedFolder {
             State::InTheWay(_) => return Ok(false),
         }
         self.marker.forget(name);
+        self.changed.insert(name.to_owned(), false);
         Ok(true)
     }
 
@@ -338,7 +365,10 @@ const READING: &str = "cannot be read";
 const WRITING: &str = "cannot be written";
 const REMOVING: &str = "cannot be removed";
 
-pub(super) fn failed(path: &Path, doing: &'static str) -> impl Fn(io::Error) -> OutputError {
+pub(super) fn failed(
+    path: &Path,
+    doing: &'static str,
+) -> impl Fn(io::Error) -> OutputError + use<> {
     let path = path.to_owned();
     move |source| OutputError::Io {
         path: path.clone(),

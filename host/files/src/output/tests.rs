@@ -30,10 +30,16 @@ fn write(target: &Path, claim: Claim, files: &[(&str, &str)]) -> Result<(), Outp
 }
 
 fn reasons(error: OutputError) -> Vec<(String, Reason)> {
-    let OutputError::InTheWay { names, .. } = error else {
-        panic!("{error}");
-    };
-    names.into_iter().map(|n| (n.name, n.reason)).collect()
+    match error {
+        OutputError::InTheWay { names, .. } => {
+            names.into_iter().map(|n| (n.name, n.reason)).collect()
+        }
+        OutputError::Exists { path, reason } => {
+            let name = path.file_name().unwrap().to_str().unwrap();
+            one(name, reason)
+        }
+        error => panic!("{error}"),
+    }
 }
 
 fn one(name: &str, reason: Reason) -> Vec<(String, Reason)> {
