@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
-use tempfile::{NamedTempFile, TempPath};
+use tempfile::{NamedTempFile, PathPersistError, TempPath};
 
 /// Folder with a list of the files that this program wrote there.
 #[derive(Debug)]
@@ -271,8 +271,7 @@ impl OwnedFolder {
 
     fn place(&mut self, file: TempPath, name: &str) -> Result<(), OutputError> {
         let path = self.folder.join(name);
-        let state = self.state(name)?;
-        let moved = match state {
+        let moved = match self.state(name)? {
             State::Free => file.persist_noclobber(&path),
             State::Own => file.persist(&path),
             State::InTheWay(reason) => {
@@ -283,13 +282,20 @@ impl OwnedFolder {
                 file.persist(&path)
             }
         };
-        moved.map_err(|error| match error.error.kind() {
-            io::ErrorKind::AlreadyExists => self.in_the_way(vec![InTheWay {
-                name: name.to_owned(),
-                reason: Reason::Foreign,
-            }]),
-            _ => failed(&path, WRITING)(error.error),
-        })?;
+        if let Err(PathPersistError { error, path: file }) = moved {
+            if error.kind() != io::ErrorKind::AlreadyExists {
+                return Err(failed(&path, WRITING)(error));
+            }
+            // Something came meanwhile: the same file of another run of this program, or a foreign one.
+            if let State::InTheWay(reason) = self.state(name)? {
+                return Err(self.in_the_way(vec![InTheWay {
+                    name: name.to_owned(),
+                    reason,
+                }]));
+            }
+            let moved = file.persist(&path);
+            moved.map_err(|error| failed(&path, WRITING)(error.error))?;
+        }
         self.changed.insert(name.to_owned(), true);
         Ok(())
     }

@@ -144,14 +144,14 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     brace.notes.iter().for_each(warn);
     let mut text = table::text(&brace);
     if let Some(out) = out {
-        text += &format!("report: {}\n", out.join(results::PAGE).display());
+        text = format!("{text}report: {}\n", out.join(results::PAGE).display());
     }
     if on_stdout {
         to_stderr(text.trim_end());
         return Ok(());
     }
     if let Some(file) = &arguments.scene_out {
-        text += &format!("tables of a scene: {}\n", file.display());
+        text = format!("{text}tables of a scene: {}\n", file.display());
     }
     print(&text)
 }
