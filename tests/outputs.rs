@@ -212,7 +212,7 @@ const READ: [&str; 7] = [
 ];
 
 /// Kinds of what may be in the way.
-const KINDS: [&str; 5] = ["file", "read-only", "folder", "link", "dangling"];
+const KINDS: [&str; 5] = ["file", "folder", "link", "read-only", "dangling"];
 
 /// Puts something of a kind there.
 fn plant(path: &Path, kind: &str, elsewhere: &Path) {
@@ -357,8 +357,10 @@ fn every_verb_and_every_path_of_the_program_is_looked_at() {
 
 /// Tries a case with something of each kind under each of its names.
 fn try_case(case: &Case) {
+    // All verbs check in one place; those that are slow have no other way to it.
+    let kinds = if case.is_slow { &KINDS[..3] } else { &KINDS };
     for name in case.names() {
-        for kind in KINDS {
+        for kind in kinds.iter().copied() {
             let what = format!("{} {:?}, {kind} {name}", case.verb, case.arguments);
             let home = tempfile::tempdir().unwrap();
             let place = home.path().join("place");

@@ -23,7 +23,8 @@ fn heard(
     let out = options
         .read(true)
         .write(true)
-        .create_new(true)
+        .create(true)
+        .truncate(true)
         .open(&file)
         .unwrap();
     let summary = sound.write(&out, &file, "A test").unwrap();

@@ -6,7 +6,9 @@ use crate::row::Row;
 use crate::running::Running;
 use crate::table::{self, Format, TableError, Written};
 use crate::traced::Traces;
-use crepitus_files::output::{Claim, Hashed, OutputError, OwnedFolder, State, lock_folder};
+use crepitus_files::output::{
+    Claim, Hashed, OutputError, OwnedFolder, State, check_folder, lock_folder,
+};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
@@ -45,6 +47,8 @@ pub struct Opening {
     pub shard: Shard,
     /// Format of the table in the end.
     pub format: Format,
+    /// The runs leave their traces.
+    pub traces: bool,
     /// Files that may be replaced.
     pub claim: Claim,
 }
@@ -132,13 +136,14 @@ impl Store {
             Ok(folder.state(ABOUT)?)
         };
         // Before anything is made.
-        if fs::symlink_metadata(folder).is_ok_and(|entry| !entry.is_dir()) && !folder.is_dir() {
-            return Err(at(folder)(io::ErrorKind::NotADirectory.into()));
-        }
+        check_folder(folder)?;
         if folder.is_dir() {
             let owned = OwnedFolder::open(folder, opening.claim.clone())?;
             if state(&owned)? != State::Own {
                 owned.check_subfolder(PARTS)?;
+            }
+            if opening.traces {
+                owned.check_subfolder(TRACES)?;
             }
         }
         fs::create_dir_all(folder).map_err(at(folder))?;

@@ -89,6 +89,8 @@ pub enum Reason {
     OtherVersion,
     /// A folder that this program did not make.
     Folder,
+    /// A file or a link where a folder belongs.
+    NoFolder,
     /// A device, a pipe or a socket.
     Special,
     /// An input.
@@ -99,7 +101,10 @@ impl Reason {
     /// Returns whether [`Claim::force`](super::Claim::force) replaces what is there.
     #[must_use]
     pub const fn yields_to_force(&self) -> bool {
-        !matches!(self, Self::Folder | Self::Special | Self::Input)
+        !matches!(
+            self,
+            Self::Folder | Self::NoFolder | Self::Special | Self::Input
+        )
     }
 }
 
@@ -113,6 +118,7 @@ impl fmt::Display for Reason {
             Self::By(verb) => return write!(f, "written by `{verb}`"),
             Self::OtherVersion => "a list of files of another version of crepitus",
             Self::Folder => "a folder that is not crepitus's",
+            Self::NoFolder => "a file or a link where a folder belongs",
             Self::Special => "neither a file nor a folder",
             Self::Input => "an input, which is never replaced",
         })

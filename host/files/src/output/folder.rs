@@ -32,33 +32,11 @@ impl Folder {
         claim: Claim,
         names: impl IntoIterator<Item = N>,
     ) -> Result<Self, OutputError> {
-        let no_folder = |path: &Path, why| OutputError::NoFolder {
-            path: path.to_owned(),
-            why,
-        };
-        if is_stdout(target) {
-            let why = "results are a folder of files, not standard output: name a folder";
-            return Err(no_folder(target, why));
-        }
-        match fs::symlink_metadata(target) {
-            Ok(_) if target.is_dir() => {
-                OwnedFolder::open(target, claim.clone())?.check(names)?;
-            }
-            Ok(entry) if entry.is_symlink() && !target.exists() => {
-                return Err(no_folder(target, "a link of this name leads nowhere"));
-            }
-            Ok(_) => return Err(no_folder(target, "there is a file of this name")),
-            // Of a name that is too long the system would tell only when the files are moved.
-            Err(error) if error.kind() == io::ErrorKind::InvalidFilename => {
-                return Err(failed(target, CREATING)(error));
-            }
-            Err(_) => {}
+        check_folder(target)?;
+        if target.is_dir() {
+            OwnedFolder::open(target, claim.clone())?.check(names)?;
         }
         let parent = folder_of(target);
-        if parent.exists() && !parent.is_dir() {
-            let why = "what it would be in is a file, not a folder";
-            return Err(no_folder(target, why));
-        }
         let prepare = || -> io::Result<(TempDir, PathBuf)> {
             fs::create_dir_all(parent)?;
             let parts = parts_of(target, parent)?;
@@ -173,6 +151,39 @@ impl Folder {
 
 const CREATING: &str = "cannot be created";
 const WRITING: &str = "cannot be written";
+
+/// Checks that a path is a folder, or that one can be made there.
+///
+/// # Errors
+/// [`OutputError`] for a file, standard output, or a link that leads nowhere.
+pub fn check_folder(target: &Path) -> Result<(), OutputError> {
+    let no_folder = |path: &Path, why| OutputError::NoFolder {
+        path: path.to_owned(),
+        why,
+    };
+    if is_stdout(target) {
+        let why = "results are a folder of files, not standard output";
+        return Err(no_folder(target, why));
+    }
+    match fs::symlink_metadata(target) {
+        Ok(_) if target.is_dir() => return Ok(()),
+        Ok(entry) if entry.is_symlink() && !target.exists() => {
+            return Err(no_folder(target, "a link of this name leads nowhere"));
+        }
+        Ok(_) => return Err(no_folder(target, "there is a file of this name")),
+        // Of a name that is too long the system would tell only when the files are moved.
+        Err(error) if error.kind() == io::ErrorKind::InvalidFilename => {
+            return Err(failed(target, CREATING)(error));
+        }
+        Err(_) => {}
+    }
+    let parent = folder_of(target);
+    if parent.exists() && !parent.is_dir() {
+        let why = "what it would be in is a file, not a folder";
+        return Err(no_folder(target, why));
+    }
+    Ok(())
+}
 
 /// Gives a new folder the permissions of the empty one that it replaces.
 fn like_target(files: &Path, target: &Path) -> io::Result<()> {

@@ -132,8 +132,8 @@ impl OwnedFolder {
                     _ => State::InTheWay(Reason::Folder),
                 }
             }
-            Some(reason) => State::InTheWay(reason),
-            None => State::InTheWay(Reason::Foreign),
+            Some(Reason::Special) => State::InTheWay(Reason::Special),
+            _ => State::InTheWay(Reason::NoFolder),
         })
     }
 
@@ -210,7 +210,8 @@ impl OwnedFolder {
         self.unless_forced(in_the_way)
     }
 
-    fn unless_forced(&self, names: Vec<InTheWay>) -> Result<(), OutputError> {
+    fn unless_forced(&self, mut names: Vec<InTheWay>) -> Result<(), OutputError> {
+        names.sort_by(|a, b| a.name.cmp(&b.name));
         let would_stay = |name: &InTheWay| !(self.claim.force && name.reason.yields_to_force());
         let names: Vec<_> = names.into_iter().filter(would_stay).collect();
         if names.is_empty() {

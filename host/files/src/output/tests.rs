@@ -147,7 +147,7 @@ fn links_and_read_only_files_stay_and_no_link_is_followed() {
     symlink(&elsewhere, target.join("parts")).unwrap();
     let folder = OwnedFolder::open(&target, claim().force(true)).unwrap();
     let error = folder.subfolder("parts").unwrap_err();
-    assert_eq!(reasons(error), one("parts", Reason::Link));
+    assert_eq!(reasons(error), one("parts", Reason::NoFolder));
 }
 
 #[cfg(unix)]

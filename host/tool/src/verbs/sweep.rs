@@ -187,6 +187,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let opening = Opening {
         shard: arguments.shard.unwrap_or(Shard::WHOLE),
         format: arguments.format,
+        traces: arguments.traces,
         claim,
     };
     let mut store = Store::create(&out, plan.identity(), &opening).map_err(store_failure)?;

@@ -19,6 +19,7 @@ fn opening(shard: &str, force: bool) -> Opening {
     Opening {
         shard: shard.parse().unwrap(),
         format: Format::Csv,
+        traces: false,
         claim: Claim::by("sweep").force(force),
     }
 }
