@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, Write};
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use tempfile::NamedTempFile;
 
@@ -183,17 +183,14 @@ pub fn write(
     let rows = rows.with_fields(&mut |share| progress(share / 2.0))?;
     let failed = rows.fields.iter().position(|f| f.name == FAILURE);
     let mut count = 0;
-    let mut file = parts.temporary()?;
+    let file = parts.temporary()?;
     let mut seen = |chunk: &Chunk, share: f64| {
         let reasons = failed
             .map(|field| (0..chunk.rows()).filter(move |&r| !chunk.cell(field, r).is_empty()));
         count += reasons.map_or(0, Iterator::count) as u64;
         progress(0.5 + share / 2.0)
     };
-    let mut hashing = Hashing {
-        file: file.as_file_mut(),
-        sha: Sha256::new(),
-    };
+    let mut hashing = Hashing::of(file.reopen()?);
     match format {
         Format::Csv => rows.write_csv(&mut hashing, &mut seen)?,
         #[cfg(feature = "parquet")]
@@ -201,11 +198,7 @@ pub fn write(
         #[cfg(not(feature = "parquet"))]
         Format::Parquet => return Err(io::Error::from(io::ErrorKind::Unsupported).into()),
     }
-    let written = hex(&hashing.sha.finalize());
-    file.as_file().sync_all()?;
-    if sha256(File::open(file.path())?)? != written {
-        return Err(TableError::ReadBack);
-    }
+    hashing.read_back(file.path())?;
     let bytes = file.as_file().metadata()?.len();
     Ok(Table {
         file,
@@ -216,12 +209,29 @@ pub fn write(
 }
 
 /// File whose content is hashed on the way.
-struct Hashing<'f> {
-    file: &'f mut File,
+struct Hashing {
+    file: File,
     sha: Sha256,
 }
 
-impl Write for Hashing<'_> {
+impl Hashing {
+    fn of(file: File) -> Self {
+        let sha = Sha256::new();
+        Self { file, sha }
+    }
+
+    /// Checks that the disk, asked for the file at this path, has what was written.
+    fn read_back(self, path: &Path) -> Result<(), TableError> {
+        self.file.sync_all()?;
+        if sha256(File::open(path)?)? == hex(&self.sha.finalize()) {
+            Ok(())
+        } else {
+            Err(TableError::ReadBack)
+        }
+    }
+}
+
+impl Write for Hashing {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let count = self.file.write(bytes)?;
         self.sha.update(bytes.get(..count).unwrap_or_default());

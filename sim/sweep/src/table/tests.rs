@@ -77,6 +77,23 @@ fn a_point_in_two_parts_has_one_row_or_makes_no_table() {
 }
 
 #[test]
+fn a_table_that_the_disk_has_not_taken_is_noticed() {
+    let table = tempfile::NamedTempFile::new().unwrap();
+    for bytes in ["a,b\n1,2\n", "a,b\n1,3\n", "a,b\n", ""] {
+        let mut hashing = Hashing::of(table.reopen().unwrap());
+        hashing.write_all(b"a,b\n1,2\n").unwrap();
+        fs::write(table.path(), bytes).unwrap();
+        let is_same = bytes == "a,b\n1,2\n";
+        let outcome = hashing.read_back(table.path());
+        let is_noticed = matches!(outcome, Err(TableError::ReadBack));
+        assert!(
+            outcome.is_ok() == is_same && is_noticed != is_same,
+            "{bytes:?}"
+        );
+    }
+}
+
+#[test]
 fn a_column_that_one_part_has_alone_is_a_difference() {
     let home = tempfile::tempdir().unwrap();
     let parts = Parts::of(home.path().to_owned(), &identity(2, ""), Shard::WHOLE);
