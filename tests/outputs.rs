@@ -1,6 +1,8 @@
 //! Nothing that the program did not write is replaced or removed: every verb and flag that writes, with a foreign
 //! file, folder, link and read-only file of each name that it writes.
 
+#![cfg(unix)]
+
 mod support;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -55,8 +55,8 @@ pub(crate) struct DeviceArguments {
 // Handling of what is in the way; shared by all verbs that write files. No doc comment: see above.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(crate) struct Force {
-    /// Replace files in the way: those that crepitus did not write, that were changed since, or that are of
-    /// another verb. Never an input, and never a folder.
+    /// Replace what is in the way: another run or sweep, and files that crepitus did not write, that were
+    /// changed since, or that are of another verb. Never an input, and never a folder.
     #[arg(long)]
     pub(crate) force: bool,
 }

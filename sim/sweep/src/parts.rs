@@ -241,24 +241,30 @@ impl Parts {
 
     /// Puts a part in its place, unless it is there already.
     fn put(&self, points: &Range<u64>, bytes: &[u8]) -> io::Result<()> {
+        if fs::symlink_metadata(self.file(points)).is_ok() {
+            return self.is_there(points, bytes);
+        }
         let mut file = self.temporary()?;
         file.write_all(bytes)?;
         file.as_file().sync_data()?;
-        let Err(error) = file.persist_noclobber(self.file(points)) else {
-            return Ok(());
-        };
-        if error.error.kind() != io::ErrorKind::AlreadyExists {
-            return Err(error.error);
+        match file.persist_noclobber(self.file(points)) {
+            Err(error) if error.error.kind() == io::ErrorKind::AlreadyExists => {
+                self.is_there(points, bytes)
+            }
+            moved => moved.map(drop).map_err(io::Error::from),
         }
-        // Another program may have run the same points: the header alone may differ.
+    }
+
+    /// Checks that a part is there with the same rows: another program may have run the same points, as
+    /// another shard.
+    fn is_there(&self, points: &Range<u64>, bytes: &[u8]) -> io::Result<()> {
         let rows = |bytes: &[u8]| format::read(bytes, points).map(|(_, columns)| columns);
-        match self.bytes(points) {
-            Ok(there) if rows(&there) == rows(bytes) => Ok(()),
-            Ok(_) => Err(io::Error::other(
-                self.refuse(points, "there are other rows of these points in it"),
-            )),
-            Err(error) => Err(io::Error::other(error)),
+        let there = self.bytes(points).map_err(io::Error::other)?;
+        if rows(&there) == rows(bytes) {
+            return Ok(());
         }
+        let why = "there are other rows of these points in it";
+        Err(io::Error::other(self.refuse(points, why)))
     }
 
     /// Reads the columns of a part.

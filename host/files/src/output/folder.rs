@@ -198,6 +198,8 @@ fn like_target(files: &Path, target: &Path) -> io::Result<()> {
         }
         fs::set_permissions(files, old.permissions())?;
     }
+    #[cfg(not(unix))]
+    let _ = (files, target);
     Ok(())
 }
 

@@ -199,10 +199,10 @@ pub(super) fn write_into(
         .pictures
         .files(|paper| crepitus_report::pictures(&figures, paper))?;
     let files = report_files(page, &summary, pictures)?;
+    results::write(folder, out, files)?;
     let sound = listener
         .map(|listener| listener.finish(&text.title))
         .transpose()?;
-    results::write(folder, out, files)?;
     let differences = figures.differences();
     overlay::warn_of_nothing(&differences, extras.overlay.file());
     Ok(Reported {

@@ -248,10 +248,10 @@ fn simulate(
         .pictures
         .files(|paper| crepitus_report::pictures(&figures, paper))?;
     let files = report_files(page, &summary, pictures)?;
+    let out = write(scene, folder, (wanted, out), files, arguments)?;
     let sound = listener
         .map(|listener| listener.finish(&scene.title))
         .transpose()?;
-    let out = write(scene, folder, (wanted, out), files, arguments)?;
     let differences = figures.differences();
     overlay::warn_of_nothing(&differences, arguments.overlay.file());
     let reported = Reported {

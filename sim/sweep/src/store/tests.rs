@@ -226,7 +226,7 @@ fn points_are_run_by_one_program_at_a_time() {
     assert!(left.keys().eq(&names), "{left:?}");
 }
 
-/// Whatever has a name that the sweep needs, and is not its own, stays to the byte; with force only files of
+/// Foreign files and folders under the names that the sweep needs stay to the byte; with force only files of
 /// just these names are replaced.
 #[test]
 fn what_is_foreign_stays() {
