@@ -80,9 +80,17 @@ fn the_demo_replaces_nothing_that_is_not_its_own() {
     let made = run(&["record", file, "--device", "sim", "--for", "100ms"]);
     assert!(made.status.success(), "{}", stderr(&made));
     let before = fs::read(&own).unwrap();
-    refuses(&["demo", "--out", out], 2, "is not a demo's recording");
+    refuses(
+        &["demo", "--out", out],
+        2,
+        "recording.parquet (not written by crepitus)",
+    );
     fs::write(home.path().join("summary.json"), r#"{"scene_as_run": ""}"#).unwrap();
-    refuses(&["demo", "--out", out], 2, "holds a run");
+    refuses(
+        &["demo", "--out", out],
+        2,
+        "recording.parquet, summary.json (not",
+    );
     assert_eq!(fs::read(&own).unwrap(), before);
     assert_eq!(names(home.path()), ["recording.parquet", "summary.json"]);
 }

@@ -249,7 +249,7 @@ fn a_run_can_be_heard() {
     let peak = samples.iter().map(|s| i32::from(*s).abs()).max().unwrap();
     assert!((peak - 29_195).abs() < 40, "{peak}");
     // With a hand, what it feels; from the same run the same bytes.
-    let hand = [&wav[..], &["--wav-of", "hand"]].concat();
+    let hand = [&wav[..], &["--wav-of", "hand", "--force"]].concat();
     played("fig8-5-hand", &home.path().join("b"), &hand);
     let once = fs::read(&file).unwrap();
     played("fig8-5-hand", &home.path().join("c"), &hand);
@@ -260,7 +260,11 @@ fn a_run_can_be_heard() {
     let other = home.path().join("other.wav");
     fs::write(&other, "CREPITUS").unwrap();
     let named = other.to_str().unwrap();
-    refused("slow-examination", &["--wav", named], &["is no sound"]);
+    refused(
+        "slow-examination",
+        &["--wav", named],
+        &["already exists", "--force"],
+    );
     assert_eq!(fs::read(&other).unwrap(), b"CREPITUS");
     refused(
         "slow-examination",

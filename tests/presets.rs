@@ -309,7 +309,7 @@ fn a_knee_is_saved_and_comes_back_to_the_bit() {
     assert_eq!(values["range-limit.render"], "on");
 
     // Nothing is replaced without being asked for, and nothing is left behind.
-    knee.refused(&save, &["monday-knee.toml exists", "--force"]);
+    knee.refused(&save, &["monday-knee.toml already exists", "--force"]);
     assert_eq!(fs::read_to_string(&file).unwrap(), first);
     knee.done(&["params", "save-preset", "monday-knee", "--force"]);
     assert_ne!(fs::read_to_string(&file).unwrap(), first);

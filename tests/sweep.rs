@@ -358,6 +358,77 @@ fn traces_are_those_of_single_runs() {
     assert!(a == b);
 }
 
+/// Two at once in one folder, and what becomes of a part that was damaged.
+#[test]
+fn one_program_runs_a_sweep_and_a_damaged_part_makes_no_table() {
+    let home = tempfile::tempdir().unwrap();
+    let home = home.path();
+    let arguments = [
+        &["--out", "s", "--threads", "1", "--format", "csv"],
+        &MANY[..],
+    ]
+    .concat();
+    let child = crepitus()
+        .arg("sweep")
+        .args(&arguments)
+        .current_dir(home)
+        .stderr(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    let is_running = || {
+        let names = names(&home.join("s/parts"));
+        names.iter().any(|name| name.starts_with(".running-"))
+    };
+    while !is_running() {
+        assert!(begun.elapsed() < Duration::from_mins(1), "it does not run");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    for force in [&[][..], &["--force"]] {
+        let text = refused(home, &[&arguments[..], force].concat(), 2);
+        let words = "another program is running points 0 to 15999";
+        assert!(text.contains(words) && text.contains("--out"), "{text}");
+    }
+    let kill = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(kill.success());
+    let output = child.wait_with_output().unwrap();
+    assert!(!is_running(), "{}", stderr(&output));
+
+    let shard = |part| {
+        let how = [
+            "low-speed",
+            "--format",
+            "csv",
+            "--out",
+            "t",
+            "--shard",
+            part,
+        ];
+        done(home, &[&how[..], &GRID].concat());
+    };
+    shard("1/2");
+    shard("2/2");
+    let part = home.join("t/parts/0000000007-0000000015.csv");
+    let mut bytes = fs::read(&part).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(&part, bytes).unwrap();
+    let text = refused(home, &["--merge", "t", "--format", "csv"], 1);
+    assert!(
+        text.contains("0000000007-0000000015.csv") && text.contains("move it away"),
+        "{text}"
+    );
+    assert!(!home.join("t/sweep.csv").exists());
+    fs::remove_file(part).unwrap();
+    shard("2/2");
+    done(home, &["--merge", "t", "--format", "csv"]);
+    assert_eq!(names(&home.join("t")), ["sweep.csv", "sweep.json"]);
+}
+
 #[test]
 fn an_interrupted_sweep_goes_on() {
     let home = tempfile::tempdir().unwrap();

@@ -88,6 +88,8 @@ pub(crate) fn names(folder: &Path) -> Vec<String> {
                 .collect()
         })
         .unwrap_or_default();
+    // The list of this program's files.
+    names.retain(|name| name != ".crepitus.sha256");
     names.sort();
     names
 }

@@ -10,12 +10,14 @@
 //! ```
 //!
 //! Every file is written beside its place and then renamed, so it is there whole or not at all,
-//! and the one that was there stays if the disk is full. `session.json` is written first: whatever
+//! and the one that was there stays if the disk is full. A table that somebody has edited meanwhile stays, too,
+//! and the error says so. `session.json` is written first: whatever
 //! happens after it, [`Session::read`] has the answers.
 
 use crate::finding::Finding;
 use crate::report::{Text, report};
 use crate::session::{Session, SessionError};
+use crepitus_files::output::{Claim, Hashed, OutputError, OwnedFolder, temporary_in};
 use crepitus_scene::preset::Level;
 use std::fs;
 use std::io::{self, Write};
@@ -88,7 +90,8 @@ impl SessionFolder {
         let folder = Self { path };
         if let Err(error) = folder.save(session) {
             // The error to report is that of the files.
-            let _ = fs::remove_dir_all(&folder.path);
+            let own = OwnedFolder::open(&folder.path, Claim::by("lesson"));
+            let _ = own.and_then(OwnedFolder::remove_own);
             return Err(error);
         }
         Ok(folder)
@@ -150,11 +153,15 @@ impl SessionFolder {
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
         let path = self.path.join(name);
         let put = || -> io::Result<()> {
-            let mut file = crate::new_file::in_folder(&self.path)?;
+            let mut file = temporary_in(&self.path)?;
             file.write_all(bytes)?;
             file.as_file().sync_all()?;
-            file.persist(&path)?;
-            Ok(())
+            let file = Hashed::of(file.into_temp_path())?;
+            // A table that somebody has edited stays; answers must not be lost, and are in the session.
+            let claim = Claim::by("lesson").force(name == SESSION);
+            let mut folder = OwnedFolder::open(&self.path, claim).map_err(io_error)?;
+            folder.put(file, name).map_err(io_error)?;
+            folder.compact().map_err(io_error)
         };
         put().map_err(write_error(&path))
     }
@@ -183,6 +190,13 @@ const REPORT: &str = "report.html";
 /// Name of a trial's recording, from 1.
 pub(crate) fn recording_name(trial: usize) -> String {
     format!("trial-{trial:02}.parquet")
+}
+
+fn io_error(error: OutputError) -> io::Error {
+    match error {
+        OutputError::Io { source, .. } => source,
+        error => io::Error::other(error),
+    }
 }
 
 fn write_error(path: &Path) -> impl FnOnce(io::Error) -> FolderError {

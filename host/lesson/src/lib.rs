@@ -31,7 +31,6 @@
 mod finding;
 mod folder;
 mod lesson;
-mod new_file;
 pub mod order;
 mod plan;
 pub mod plans;

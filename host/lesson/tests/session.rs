@@ -296,8 +296,9 @@ fn a_full_disk_keeps_what_was_there() {
         "{text}"
     );
     assert_eq!(Session::read(folder.path()).unwrap(), session);
+    // The session's three, and their list.
     let files = fs::read_dir(folder.path()).unwrap();
-    assert_eq!(files.count(), 3);
+    assert_eq!(files.count(), 4);
 }
 
 #[cfg(target_os = "linux")]

@@ -49,10 +49,7 @@ pub use report_columns::ReportColumns;
 pub use row::{COLUMNS, Row, Step};
 pub use samples::Samples;
 
-use std::fs::File;
-use std::io;
 use std::path::Path;
-use tempfile::NamedTempFile;
 
 /// Writes a recording to an empty file, durably; tells the number of rows so
 /// far, and ends with [`Interrupted`](std::io::ErrorKind::Interrupted) if that
@@ -77,43 +74,9 @@ pub fn mcap_writer() -> Option<Write> {
     None
 }
 
-/// A file that is to appear whole, with this name in the end.
-///
-/// # Errors
-/// Of the disk.
-pub fn new_file(path: &Path) -> io::Result<NamedTempFile> {
-    let folder = folder_of(path);
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".crepitus-");
-    // The usual permissions, not those of a temporary file.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
-}
-
-/// Puts the name of a file on the disk; where folders cannot be opened the system does it.
-///
-/// # Errors
-/// Of the disk.
-pub fn sync_folder_of(path: &Path) -> io::Result<()> {
-    match File::open(folder_of(path)) {
-        Ok(folder) if cfg!(unix) => folder.sync_all(),
-        _ => Ok(()),
-    }
-}
-
-fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    }
-}
-
-/// Lower-case hex digits.
-fn hex(bytes: &[u8]) -> String {
-    use std::fmt::Write as _;
-    bytes.iter().fold(String::new(), |mut hex, byte| {
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    })
+/// Returns whether a file is the recording with this id, as far as it can be read; a link is none.
+pub fn is_recording(file: &Path, id: &str) -> bool {
+    let is_file = std::fs::symlink_metadata(file).is_ok_and(|entry| entry.is_file());
+    let is_own = |recording: Recording| recording.metadata().id == id;
+    is_file && Recording::open(file, Damage::Salvage).is_ok_and(is_own)
 }

@@ -30,7 +30,7 @@ impl From<&Identity> for Controller {
         Self {
             version: format!("{major}.{minor}.{patch}"),
             schema: format!("{:016x}", identity.schema),
-            serial: crate::hex(&identity.serial),
+            serial: crepitus_files::output::hex(&identity.serial),
             image: format!("{:08x}", identity.image),
         }
     }
@@ -70,7 +70,7 @@ impl Metadata {
         let what = format!("{now:?} {} {:?}", std::process::id(), comms.serial);
         Self {
             format: FORMAT,
-            id: crate::hex(&Sha256::digest(what)[..8]),
+            id: crepitus_files::output::hex(&Sha256::digest(what)[..8]),
             title: title.to_owned(),
             begun_unix_s: now.as_secs(),
             recorder: env!("CARGO_PKG_VERSION").to_owned(),

@@ -19,4 +19,4 @@ mod resampler;
 mod sound;
 
 pub use high_pass::HIGH_PASS_HZ;
-pub use sound::{RATE_HZ, Sound, SoundError, SoundSummary, WrittenSound};
+pub use sound::{RATE_HZ, Sound, SoundError, SoundSummary};

@@ -7,7 +7,6 @@ use serde::Serialize;
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 
 /// Sampling rate of every sound, Hz.
 pub const RATE_HZ: u32 = 48_000;
@@ -81,14 +80,6 @@ impl Kept {
         }
         Ok(self.file.write_all(&value.to_le_bytes())?)
     }
-}
-
-/// A written sound file that is not in its place yet.
-#[derive(Debug)]
-pub struct WrittenSound {
-    file: NamedTempFile,
-    /// Level, length and band.
-    pub summary: SoundSummary,
 }
 
 /// Level, length and band of a sound.
@@ -176,12 +167,17 @@ impl Sound {
         self.resampler.push(value, &mut |y| kept.take(y))
     }
 
-    /// Writes the sound to a temporary file in the folder of `file`, with title and level in its
+    /// Writes the sound into `out`, an empty file that will be called `file`, with title and level in its
     /// `INFO` chunk.
     ///
     /// # Errors
     /// [`SoundError::Nothing`] without rows, or an error of writing.
-    pub fn write(self, file: &Path, title: &str) -> Result<WrittenSound, SoundError> {
+    pub fn write(
+        self,
+        mut out: &File,
+        file: &Path,
+        title: &str,
+    ) -> Result<SoundSummary, SoundError> {
         let Self {
             resampler,
             mut kept,
@@ -205,22 +201,13 @@ impl Sound {
             missing_rows: missing,
         };
         let scale = summary.full_scale_nm.map_or(0.0, |nm| 1.0 / nm);
-        let folder = file
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty());
-        #[cfg_attr(not(unix), expect(unused_mut, reason = "files have no mode there"))]
-        let mut builder = tempfile::Builder::new();
-        // The usual permissions, not those of a temporary file.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut out = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
         let specification = hound::WavSpec {
             channels: 1,
             sample_rate: RATE_HZ,
             bits_per_sample: 16,
             sample_format: hound::SampleFormat::Int,
         };
-        let mut wav = hound::WavWriter::new(BufWriter::new(out.as_file_mut()), specification)?;
+        let mut wav = hound::WavWriter::new(BufWriter::new(out), specification)?;
         let mut values = kept
             .file
             .into_inner()
@@ -239,21 +226,10 @@ impl Sound {
         let comment = format!("torque above {HIGH_PASS_HZ} Hz, {}", summary.level());
         let software = concat!("crepitus ", env!("CARGO_PKG_VERSION"));
         info_chunk::append(
-            out.as_file_mut(),
+            &mut out,
             &[(b"INAM", title), (b"ICMT", &comment), (b"ISFT", software)],
         )?;
-        out.as_file().sync_all()?;
-        Ok(WrittenSound { file: out, summary })
-    }
-}
-
-impl WrittenSound {
-    /// Moves the file into place, over an earlier one.
-    ///
-    /// # Errors
-    /// If the file cannot be moved.
-    pub fn persist(self) -> io::Result<SoundSummary> {
-        self.file.persist(&self.summary.file)?;
-        Ok(self.summary)
+        out.sync_all()?;
+        Ok(summary)
     }
 }

@@ -4,8 +4,9 @@
 use crate::failure::Failure;
 use crate::verbs::Verb;
 use clap::{Args, Parser};
+use crepitus_files::output::{Claim, Inputs};
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// A motorised brace as a patient with a diseased knee: simulate the joint
@@ -49,6 +50,28 @@ pub(crate) struct DeviceArguments {
     /// [default: passive-examination].
     #[arg(long, value_name = "SCENE", global = true)]
     pub(crate) scene: Option<PathBuf>,
+}
+
+// Handling of what is in the way; shared by all verbs that write files. No doc comment: see above.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub(crate) struct Force {
+    /// Replace what is in the way: another run or sweep, and files that crepitus did not write, that were
+    /// changed since, or that are of another verb. Never an input, and never a folder.
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+impl Force {
+    /// The claim of a verb that reads these files.
+    pub(crate) fn claim<P: AsRef<Path>>(
+        self,
+        verb: &str,
+        inputs: impl IntoIterator<Item = P>,
+    ) -> Claim {
+        Claim::by(verb)
+            .force(self.force)
+            .reading(Inputs::of(inputs))
+    }
 }
 
 /// Parses `PATH=VALUE`, and whatever else has a name and a value.

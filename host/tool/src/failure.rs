@@ -2,6 +2,7 @@
 
 use crate::output::{to_stderr, to_stdout};
 use crate::safe_text::{message, visible};
+use crepitus_files::output::{OutputError, is_stdout};
 use crepitus_scene::SceneError;
 use serde_json::{Map, Value, json};
 use std::fmt::Display;
@@ -27,6 +28,27 @@ pub(crate) enum Failure {
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
         Self::input(error)
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        let advice = match &error {
+            OutputError::Io { path, source, .. }
+                if source.kind() == io::ErrorKind::BrokenPipe && is_stdout(path) =>
+            {
+                return Self::NoReader;
+            }
+            OutputError::Io {
+                path,
+                doing,
+                source,
+            } => return Self::at(path, doing, source),
+            OutputError::NoFolder { .. } => "name another folder with --out",
+            _ if error.yields_to_force() => "choose another place or name, or replace with --force",
+            _ => "choose another place or name, or move it away; --force does not replace it",
+        };
+        Self::Input(format!("{error}: {advice}"))
     }
 }
 

@@ -1,13 +1,13 @@
 //! The user's own presets: a folder of files in the form of those that ship.
 
 use crate::failure::{Failure, warn};
+use crepitus_files::output::{Inputs, NewFile};
 use crepitus_scene::preset::{self, Disorder, Preset};
 use crepitus_scene::similar::{question, similar};
 use std::env;
 use std::fs;
-use std::io::{self, ErrorKind, Write};
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use tempfile::PersistError;
 
 /// Names another folder.
 pub(crate) const FOLDER_VARIABLE: &str = "CREPITUS_PRESETS";
@@ -164,29 +164,13 @@ pub(crate) fn write(name: &str, preset: &Preset, force: bool) -> Result<PathBuf,
     // What is written can be read.
     Preset::parse(&target, &text).map_err(Failure::input)?;
     make(&folder)?;
-    let put = || {
-        let mut part = crepitus_recording::new_file(&target)?;
-        part.write_all(text.as_bytes())?;
-        part.as_file().sync_all()?;
-        io::Result::Ok(part)
-    };
-    let cannot = |error| Failure::at(&target, "cannot be written", &error);
-    let part = put().map_err(cannot)?;
-    let put = if force {
-        part.persist(&target)
-    } else {
-        part.persist_noclobber(&target)
-    };
-    match put {
-        Ok(_) => Ok(target),
-        Err(PersistError { error, .. }) if error.kind() == ErrorKind::AlreadyExists && !force => {
-            Err(Failure::Input(format!(
-                "{} exists: choose another name, or replace it with --force",
-                target.display()
-            )))
-        }
-        Err(PersistError { error, .. }) => Err(cannot(error)),
-    }
+    let file = NewFile::create(&target, force, &Inputs::default())?;
+    let written = file.as_file().write_all(text.as_bytes());
+    written
+        .and_then(|()| file.as_file().sync_all())
+        .map_err(|error| Failure::at(&target, "cannot be written", &error))?;
+    file.persist()?;
+    Ok(target)
 }
 
 /// Creates the folder of presets where there is none.

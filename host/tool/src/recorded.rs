@@ -9,12 +9,13 @@ use crate::progress::Progress;
 use crate::shell;
 use crate::status_line::StatusLine;
 use crepitus_client::{Begin, Client};
+use crepitus_files::output::{folder_of, sync_folder_of, temporary_in};
 use crepitus_protocol::Revision;
 use crepitus_protocol::telemetry::Block;
 use crepitus_recording::{
-    Damage, Metadata, RecordError, Recorder, Recording, Totals, Write, new_file, parquet_writer,
+    Damage, Metadata, RecordError, Recorder, Recording, Totals, Write, is_recording, parquet_writer,
 };
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
@@ -59,8 +60,7 @@ impl Recorded {
     fn discard(self) -> Result<(), Failure> {
         let file = self.recorder.path().to_owned();
         drop(self.recorder);
-        let is_own = |recording: Recording| recording.metadata().id == self.id;
-        if !Recording::open(&file, Damage::Salvage).is_ok_and(is_own) {
+        if !is_recording(&file, &self.id) {
             return Ok(());
         }
         fs::remove_file(&file).map_err(|e| Failure::at(&file, "cannot be removed", &e))
@@ -166,7 +166,7 @@ fn in_final_format(file: &Path, id: &str) -> Result<(), Failure> {
         let file = file.display();
         return Err(lost(&format!("{file} is another recording now")));
     }
-    let made = written(&recording, file, Clash::Replace, writer);
+    let made = replaced(&recording, file, id, writer);
     if let Err(Failure::Input(error) | Failure::Work(error)) = made {
         warn(format!(
             "{error}; {} is whole, in the format of a recording in progress: `crepitus export {} \
@@ -178,6 +178,19 @@ fn in_final_format(file: &Path, id: &str) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Replaces the file of this recording, and no other, by another format of it.
+fn replaced(recording: &Recording, file: &Path, id: &str, writer: Write) -> Result<(), Failure> {
+    let failed = |error: io::Error| Failure::at(file, "cannot be written", &error);
+    let new = temporary_in(folder_of(file)).map_err(failed)?;
+    written(recording, file, new.as_file(), writer)?;
+    if !is_recording(file, id) {
+        return Err(lost(&format!("{} is another file now", file.display())));
+    }
+    new.persist(file).map_err(|error| failed(error.error))?;
+    // The name, too, outlives a power cut.
+    sync_folder_of(file).map_err(failed)
+}
+
 /// Failure: what was recorded is no longer in its file.
 fn lost(why: &str) -> Failure {
     Failure::Work(format!(
@@ -186,58 +199,24 @@ fn lost(why: &str) -> Failure {
     ))
 }
 
-/// Handling of an existing file of that name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Clash {
-    /// It is an error.
-    Refuse,
-    /// Replace it.
-    Replace,
-}
-
-/// Writes a recording into a file, which appears whole or not at all. Returns its number of rows.
+/// Writes a recording into an empty file, that will be called `out`. Returns its number of rows.
 pub(crate) fn written(
     recording: &Recording,
     out: &Path,
-    clash: Clash,
+    file: &File,
     write: Write,
 ) -> Result<u64, Failure> {
-    if clash == Clash::Refuse && out.exists() {
-        return Err(exists(out));
-    }
-    let failed = |error: io::Error| match error.kind() {
-        ErrorKind::Interrupted => Failure::interrupted(),
-        _ => Failure::at(out, "cannot be written", &error),
-    };
-    let file = new_file(out).map_err(failed)?;
     let mut progress = Progress::of_reading();
     let expected = recording.books().totals.received.max(1);
-    let rows = write(recording, file.as_file(), &mut |rows| {
+    let rows = write(recording, file, &mut |rows| {
         #[expect(clippy::cast_precision_loss, reason = "a share")]
         progress.reached(rows as f64 / expected as f64);
         !interrupt::requested()
+    });
+    rows.map_err(|error| match error.kind() {
+        ErrorKind::Interrupted => Failure::interrupted(),
+        _ => Failure::at(out, "cannot be written", &error),
     })
-    .map_err(failed)?;
-    match clash {
-        Clash::Replace => file.persist(out).map_err(|error| failed(error.error))?,
-        Clash::Refuse => file.persist_noclobber(out).map_err(|error| {
-            if error.error.kind() == ErrorKind::AlreadyExists {
-                exists(out)
-            } else {
-                failed(error.error)
-            }
-        })?,
-    };
-    // The name, too, outlives a power cut.
-    crepitus_recording::sync_folder_of(out).map_err(failed)?;
-    Ok(rows)
-}
-
-fn exists(out: &Path) -> Failure {
-    Failure::Input(format!(
-        "{} already exists: choose another name with --out, or remove it",
-        out.display()
-    ))
 }
 
 /// Prints the sums of a recording, and what to do with it.

@@ -2,49 +2,45 @@
 
 use crate::failure::{Failure, warn};
 use crate::recorded::beside;
+use crepitus_files::output::{Claim, Folder, OwnedFolder};
 use crepitus_plot::{Figure, pictures};
 use crepitus_scene::Scene;
-use crepitus_scene::output::Folder;
 use serde::Serialize;
 use serde_json::Value;
 use std::ffi::{OsStr, OsString};
-use std::fs::{self, File};
-use std::io::{ErrorKind, Read, Write};
+use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Names and contents of files.
 pub(crate) type Files = Vec<(String, Vec<u8>)>;
 
-/// Files that many results have.
-const COMMON_FILES: [&str; 4] = ["report.html", "summary.json", "trace.csv", "events.csv"];
+/// Names of the files of [`report_files`].
+pub(crate) const REPORT: [&str; 2] = ["report.html", "summary.json"];
 
-/// First bytes of recordings: of Parquet files, and of logs of any version.
-const RECORDING_HEADS: [&[u8]; 2] = [b"PAR1", b"crepitus recording "];
-
-/// The folder of the results, not yet in place. Called before the work, so
-/// that a folder without write permission fails early.
-///
-/// One that holds a run, which could not be repeated without its summary, is refused.
-pub(crate) fn folder(out: &Path) -> Result<Folder, Failure> {
-    if summary_in(out)["scene_as_run"].is_string() {
-        return Err(Failure::Input(format!(
-            "{} holds a run, whose summary.json would be replaced: name another folder with --out",
-            out.display()
-        )));
-    }
-    folder_of_run(out)
+/// The folder of the results, not yet in place, which gets files of these names at least. Called before the
+/// work, so that what is in the way, or a folder without write permission, ends it early.
+pub(crate) fn folder<N: AsRef<str>>(
+    out: &Path,
+    claim: Claim,
+    names: impl IntoIterator<Item = N>,
+) -> Result<Folder, Failure> {
+    Ok(Folder::create(out, claim, names)?)
 }
 
-/// The same for the report of the recording with this id: other results are refused.
-pub(crate) fn folder_of_report(out: &Path, id: &str) -> Result<Folder, Failure> {
-    let prepared = folder(out)?;
-    if out.join("summary.json").exists() && summary_in(out)["id"].as_str() != Some(id) {
-        return Err(Failure::Input(format!(
-            "{} holds other results, which would be replaced: name another folder with --out, or remove it",
-            out.display()
-        )));
-    }
-    Ok(prepared)
+/// The files that a verb reads: the scene that was named, the files of scenes, and a curve.
+pub(crate) fn inputs<'s>(
+    named: &Path,
+    scenes: impl IntoIterator<Item = &'s Scene>,
+    overlay: Option<&Path>,
+) -> Vec<PathBuf> {
+    let of_scene = |scene: &Scene| {
+        let data = scene.data.as_ref().map(|data| data.file.clone());
+        [Some(scene.file.clone()), data]
+    };
+    let of_scenes = scenes.into_iter().flat_map(of_scene).flatten();
+    let others = [Some(named), overlay].into_iter().flatten();
+    others.map(Path::to_owned).chain(of_scenes).collect()
 }
 
 /// The folder in `out` that is named after a scene's file.
@@ -62,40 +58,14 @@ pub(crate) fn named_after(scene: &Path, before: &str, after: &str) -> Result<Pat
     Ok(Path::new("out").join(name))
 }
 
-/// The same for a run.
-pub(crate) fn folder_of_run(out: &Path) -> Result<Folder, Failure> {
-    refuse_recordings(out, COMMON_FILES)?;
-    Folder::create(out).map_err(|e| Failure::at(out, "cannot be written", &e))
-}
-
-/// Refuses to replace a recording that has the name of a result.
-fn refuse_recordings<'n>(
-    out: &Path,
-    names: impl IntoIterator<Item = &'n str>,
-) -> Result<(), Failure> {
-    let mut files = names.into_iter().map(|name| out.join(name));
-    let Some(file) = files.find(|file| is_recording(file)) else {
-        return Ok(());
-    };
-    Err(Failure::Input(format!(
-        "{} is a recording, and would be replaced: name another folder with --out",
-        file.display()
-    )))
-}
-
-fn is_recording(file: &Path) -> bool {
-    // Opening a pipe would wait for its writer.
-    if !file.is_file() {
-        return false;
-    }
-    let mut head = Vec::new();
-    let read = File::open(file).and_then(|file| file.take(32).read_to_end(&mut head));
-    read.is_ok() && RECORDING_HEADS.iter().any(|begin| head.starts_with(begin))
-}
-
-/// The summary that a folder has; null if there is none.
+/// The summary that a folder has; null if there is none. Opening a pipe would wait for its writer.
 fn summary_in(folder: &Path) -> Value {
-    let text = fs::read_to_string(folder.join("summary.json")).unwrap_or_default();
+    let file = folder.join("summary.json");
+    let text = if file.is_file() {
+        fs::read_to_string(file).unwrap_or_default()
+    } else {
+        String::new()
+    };
     serde_json::from_str(&text).unwrap_or_default()
 }
 
@@ -197,11 +167,10 @@ impl<'a> Identity<'a> {
         files: Files,
     ) -> Result<PathBuf, Failure> {
         fill(&folder, out, files)?;
-        let failed = |e| Failure::at(out, "moving the results into place", &e);
         let mut place = out.to_owned();
-        while !folder.commit_new().map_err(failed)? {
+        while !folder.commit_new()? {
             if !self.is_another_in(&place) {
-                folder.commit().map_err(failed)?;
+                folder.commit()?;
                 break;
             }
             place = self.free_folder(wanted)?;
@@ -212,17 +181,15 @@ impl<'a> Identity<'a> {
 }
 
 /// Removes what an earlier run in the folder has left and this one does not
-/// replace.
-pub(crate) fn remove_others(folder: &Path) -> Result<(), Failure> {
+/// replace; what is not the run's stays, and is named.
+pub(crate) fn remove_others(folder: &Path, claim: Claim) -> Result<(), Failure> {
+    let mut owned = OwnedFolder::open(folder, claim)?;
     for name in ["trace.csv", "report.html"] {
-        match fs::remove_file(folder.join(name)) {
-            Err(e) if e.kind() != ErrorKind::NotFound => {
-                return Err(Failure::at(folder, "removing an earlier run", &e));
-            }
-            _ => {}
+        if !owned.remove(name)? {
+            warn(format!("{}: not of this run: {name}", folder.display()));
         }
     }
-    Ok(())
+    Ok(owned.compact()?)
 }
 
 /// Warns of pictures in the folder that are not of these files: earlier results', or somebody's own.
@@ -242,8 +209,6 @@ fn warn_of_other_pictures(folder: &Path, names: &[String]) {
 
 /// Writes files into a folder.
 fn fill(folder: &Folder, out: &Path, files: Files) -> Result<(), Failure> {
-    // Names of pictures and tables are known only now.
-    refuse_recordings(out, files.iter().map(|(name, _)| name.as_str()))?;
     for (name, content) in files {
         folder
             .file(&name)
@@ -260,9 +225,7 @@ fn fill(folder: &Folder, out: &Path, files: Files) -> Result<(), Failure> {
 pub(crate) fn write(folder: Folder, out: &Path, files: Files) -> Result<(), Failure> {
     let names: Vec<_> = files.iter().map(|(name, _)| name.clone()).collect();
     fill(&folder, out, files)?;
-    folder
-        .commit()
-        .map_err(|e| Failure::at(out, "moving the results into place", &e))?;
+    folder.commit()?;
     warn_of_other_pictures(out, &names);
     Ok(())
 }

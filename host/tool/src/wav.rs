@@ -1,19 +1,19 @@
 //! `--wav`: a torque as a sound.
 
-use crate::failure::{Failure, warn};
+use crate::cli::Force;
+use crate::failure::{Failure, print, warn};
+use crate::output::to_stderr;
 use clap::{Args, ValueEnum};
-use crepitus_recording::new_file;
+use crepitus_files::output::{Inputs, NewFile, is_stdout};
 use crepitus_scene::trace::Column;
 use crepitus_sound::{Sound, SoundError, SoundSummary};
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Whether a sound is wanted, and of what.
 #[derive(Debug, Default, Args)]
 pub(crate) struct Wav {
-    /// Also write a torque as a sound: 48 kHz, from 30 Hz on, its largest sample 1 dB below full scale.
-    /// Replaces the file.
+    /// Also write a torque as a sound: 48 kHz, from 30 Hz on, its largest sample 1 dB below full scale; `-`
+    /// is standard output.
     #[arg(id = "wav", long = "wav", value_name = "FILE.wav", value_parser = named)]
     file: Option<PathBuf>,
 
@@ -41,9 +41,12 @@ impl Of {
     }
 }
 
-/// Keeps a wrong name from being replaced by a sound.
+/// Refuses the name of something else than a sound.
 fn named(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
+    if is_stdout(&path) {
+        return Ok(path);
+    }
     if path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("wav"))
@@ -59,7 +62,8 @@ fn named(text: &str) -> Result<PathBuf, String> {
 pub(crate) struct Listener {
     sound: Sound,
     index: usize,
-    file: PathBuf,
+    path: PathBuf,
+    file: NewFile,
 }
 
 impl Wav {
@@ -68,8 +72,10 @@ impl Wav {
         &self,
         columns: &[Column],
         step_s: f64,
+        force: Force,
+        inputs: &Inputs,
     ) -> Result<Option<Listener>, Failure> {
-        let Some(file) = &self.file else {
+        let Some(path) = &self.file else {
             return Ok(None);
         };
         let name = self.wav_of.column();
@@ -83,34 +89,38 @@ impl Wav {
                     .to_owned(),
             }));
         };
-        // Before the work, so that a place where no file can be is reported early.
-        if file.is_dir() {
-            return Err(Failure::Input(format!(
-                "--wav {}: this is a folder: name a file",
-                file.display()
-            )));
-        }
-        if is_of_another_kind(file) {
-            return Err(Failure::Input(format!(
-                "--wav {}: this file is no sound, and would be replaced: choose another name",
-                file.display()
-            )));
-        }
-        new_file(file).map_err(|e| Failure::at(file, "cannot be written", &e))?;
-        let sound = Sound::new(step_s).map_err(|e| failed(file, &e))?;
+        let file = NewFile::create(path, force.force, inputs)?;
+        let sound = Sound::new(step_s).map_err(|e| failed(path, &e))?;
         Ok(Some(Listener {
             sound,
             index,
-            file: file.clone(),
+            path: path.clone(),
+            file,
         }))
     }
-}
 
-/// Returns whether there is something in the file, and no sound.
-fn is_of_another_kind(file: &Path) -> bool {
-    let mut head = Vec::new();
-    let read = File::open(file).and_then(|file| file.take(4).read_to_end(&mut head));
-    read.is_ok() && !head.is_empty() && head != *b"RIFF"
+    fn is_stdout(&self) -> bool {
+        self.file.as_deref().is_some_and(is_stdout)
+    }
+
+    /// Refuses a sound and JSON on standard output.
+    pub(crate) fn check_stdout(&self, as_json: bool) -> Result<(), Failure> {
+        if as_json && self.is_stdout() {
+            return Err(Failure::input(
+                "--json and --wav - would both write to standard output: name a file with --wav",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Prints the result of the verb: to stderr, if the sound goes to standard output.
+    pub(crate) fn print(&self, text: &str) -> Result<(), Failure> {
+        if self.is_stdout() {
+            to_stderr(text.trim_end());
+            return Ok(());
+        }
+        print(text)
+    }
 }
 
 impl Listener {
@@ -120,23 +130,20 @@ impl Listener {
             (Some(time_s), Some(value)) => self
                 .sound
                 .row(*time_s, *value)
-                .map_err(|e| failed(&self.file, &e)),
+                .map_err(|e| failed(&self.path, &e)),
             _ => Ok(()),
         }
     }
 
     /// Writes the file.
     pub(crate) fn finish(self, title: &str) -> Result<SoundSummary, Failure> {
-        let file = self.file;
-        let written = self.sound.write(&file, title);
-        let summary = written
-            .map_err(|e| failed(&file, &e))?
-            .persist()
-            .map_err(|e| Failure::at(&file, "cannot be written", &e))?;
+        let written = self.sound.write(self.file.as_file(), &self.path, title);
+        let summary = written.map_err(|e| failed(&self.path, &e))?;
+        self.file.persist()?;
         if summary.missing_rows > 0 {
             warn(format!(
                 "{}: {} missing rows are silent",
-                file.display(),
+                self.path.display(),
                 summary.missing_rows
             ));
         }

@@ -1,12 +1,9 @@
-//! The files of a run: `trace.csv`, `events.csv`, and a folder in which they
-//! appear whole or not at all.
+//! The files of a run: `trace.csv` and `events.csv`.
 
 mod events_csv;
-mod folder;
 mod trace_csv;
 
 pub use events_csv::EventsCsv;
-pub use folder::Folder;
 pub use trace_csv::TraceCsv;
 
 use crepitus_model::Phase;

@@ -1,11 +1,16 @@
 //! Part files of a sweep: rows in files that appear whole or not at all, so that a killed sweep can
 //! be resumed and several computers can write into one folder.
 //!
-//! A part has the rows of neighbouring points, which its name tells. It is CSV with a
-//! record a *column*: name, kind, then a value a row, or one value for all rows; most
-//! columns of a sweep do not vary, and a table is written column by column.
+//! A part has the rows of neighbouring points, which its name tells. It says of which sweep and shard it
+//! is, which points and how many columns it has, and ends with a SHA-256 of itself ([`format`]): a part that
+//! was damaged, changed, renamed, or is of another sweep is named, and makes no table.
 
+mod format;
+
+use crate::plan::{Identity, Shard};
 use crate::row::Row;
+use crepitus_files::output::temporary_with_prefix;
+use format::Header;
 use std::collections::HashMap;
 use std::fs;
 use std::io::{self, Write};
@@ -86,16 +91,6 @@ impl Kind {
     }
 }
 
-/// Creates a temporary file, which is removed if it is dropped. Once persisted it can be read by
-/// others, as far as the user's mask allows.
-pub(crate) fn scratch_file(folder: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".part-");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
-}
-
 /// Returns the columns of neighbouring rows, in the order in which they first appear.
 fn columns(rows: &[Row]) -> Vec<Column> {
     let mut places: HashMap<&str, usize> = HashMap::new();
@@ -126,24 +121,34 @@ fn columns(rows: &[Row]) -> Vec<Column> {
     found.into_iter().map(column).collect()
 }
 
-/// Folder of the part files.
+/// Part files of one sweep in a folder.
 #[derive(Clone, Debug)]
 pub struct Parts {
     folder: PathBuf,
+    /// [`Identity::id`].
+    sweep: String,
+    runs: u64,
+    /// Shard whose rows are written.
+    shard: Shard,
 }
 
-/// Error of a damaged part file.
+/// Error of a part file that is not a part of this sweep as it was written.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {why}: remove it, and the sweep runs its points again", file.display())]
+#[error("{}: {why}: move it away, and the sweep runs its points again", file.display())]
 pub struct PartError {
     file: PathBuf,
     why: String,
 }
 
 impl Parts {
-    /// Names the folder, which need not exist.
-    pub const fn in_folder(folder: PathBuf) -> Self {
-        Self { folder }
+    /// Names the folder, which need not exist, the sweep, and the shard whose rows are written.
+    pub fn of(folder: PathBuf, sweep: &Identity, shard: Shard) -> Self {
+        Self {
+            folder,
+            sweep: sweep.id(),
+            runs: sweep.runs,
+            shard,
+        }
     }
 
     /// Returns the folder.
@@ -151,9 +156,26 @@ impl Parts {
         &self.folder
     }
 
-    fn file(&self, points: &Range<u64>) -> PathBuf {
-        self.folder
-            .join(format!("{:010}-{:010}.csv", points.start, points.end))
+    /// Creates a temporary file, which is removed if it is dropped. Its name has the sweep, so that one that
+    /// a killed program has left is known.
+    pub(crate) fn temporary(&self) -> io::Result<NamedTempFile> {
+        temporary_with_prefix(&self.folder, &self.temporary_prefix())
+    }
+
+    fn temporary_prefix(&self) -> String {
+        format!(".part-{}-", self.sweep.get(..16).unwrap_or_default())
+    }
+
+    /// Returns the path of the part with these points.
+    pub fn file(&self, points: &Range<u64>) -> PathBuf {
+        self.folder.join(name_of(points))
+    }
+
+    fn refuse(&self, points: &Range<u64>, why: impl Into<String>) -> PartError {
+        PartError {
+            file: self.file(points),
+            why: why.into(),
+        }
     }
 
     /// Lists the points of each part, in their order.
@@ -161,136 +183,172 @@ impl Parts {
     /// # Errors
     /// If the folder cannot be read.
     pub fn points(&self) -> io::Result<Vec<Range<u64>>> {
+        let mut found: Vec<_> = (self.names()?.iter())
+            .filter_map(|name| points_of(name))
+            .collect();
+        found.sort_by_key(|points| (points.start, points.end));
+        Ok(found)
+    }
+
+    /// Lists the parts, each of which is read and verified.
+    ///
+    /// # Errors
+    /// The first that is not a part of this sweep as it was written, or the folder cannot be read.
+    pub fn verified(&self) -> io::Result<Vec<Range<u64>>> {
+        let there = self.points()?;
+        for points in &there {
+            self.bytes(points).map_err(io::Error::other)?;
+        }
+        Ok(there)
+    }
+
+    fn names(&self) -> io::Result<Vec<String>> {
         let entries = match fs::read_dir(&self.folder) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
             entries => entries?,
         };
-        let mut found = Vec::new();
+        let mut names = Vec::new();
         for entry in entries {
-            let name = entry?.file_name();
-            found.extend(name.to_str().and_then(points_of));
+            names.extend(entry?.file_name().into_string().ok());
         }
-        found.sort_by_key(|points| (points.start, points.end));
-        Ok(found)
+        Ok(names)
     }
 
     /// Writes rows; those of neighbouring points become one part.
     ///
     /// # Errors
-    /// If a part cannot be written; no incomplete part is left then.
+    /// If a part cannot be written, or another file has its name; no incomplete part is left then.
     pub fn write(&self, rows: &[Row]) -> io::Result<()> {
         let is_next = |a: &Row, b: &Row| b.index == a.index + 1;
         for rows in rows.chunk_by(is_next) {
             let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
                 continue;
             };
-            self.write_part(&(first.index..last.index + 1), &columns(rows))?;
+            let points = first.index..last.index + 1;
+            let bytes = format::write(&self.header(&points), &columns(rows))?;
+            self.put(&points, &bytes)?;
         }
         Ok(())
     }
 
-    fn write_part(&self, points: &Range<u64>, columns: &[Column]) -> io::Result<()> {
-        let mut file = scratch_file(&self.folder)?;
-        {
-            let buffered = io::BufWriter::with_capacity(1 << 16, file.as_file_mut());
-            let mut writer = csv::WriterBuilder::new()
-                .flexible(true)
-                .from_writer(buffered);
-            for column in columns {
-                writer.write_field(&column.name)?;
-                writer.write_field(column.kind.name())?;
-                match &column.cells {
-                    Cells::Constant(text) => writer.write_field(text)?,
-                    Cells::Each(texts) => {
-                        for text in texts {
-                            writer.write_field(text)?;
-                        }
-                    }
-                }
-                writer.write_record(None::<&[u8]>)?;
-            }
-            writer.flush()?;
+    fn header(&self, points: &Range<u64>) -> Header {
+        Header {
+            sweep: self.sweep.clone(),
+            shard: self.shard,
+            points: points.clone(),
         }
-        file.as_file_mut().flush()?;
+    }
+
+    /// Puts a part in its place, unless it is there already.
+    fn put(&self, points: &Range<u64>, bytes: &[u8]) -> io::Result<()> {
+        if fs::symlink_metadata(self.file(points)).is_ok() {
+            return self.is_there(points, bytes);
+        }
+        let mut file = self.temporary()?;
+        file.write_all(bytes)?;
         file.as_file().sync_data()?;
-        file.persist(self.file(points))?;
-        Ok(())
+        match file.persist_noclobber(self.file(points)) {
+            Err(error) if error.error.kind() == io::ErrorKind::AlreadyExists => {
+                self.is_there(points, bytes)
+            }
+            moved => moved.map(drop).map_err(io::Error::from),
+        }
+    }
+
+    /// Checks that a part is there with the same rows: another program may have run the same points, as
+    /// another shard.
+    fn is_there(&self, points: &Range<u64>, bytes: &[u8]) -> io::Result<()> {
+        let rows = |bytes: &[u8]| format::read(bytes, points).map(|(_, columns)| columns);
+        let there = self.bytes(points).map_err(io::Error::other)?;
+        if rows(&there) == rows(bytes) {
+            return Ok(());
+        }
+        let why = "there are other rows of these points in it";
+        Err(io::Error::other(self.refuse(points, why)))
     }
 
     /// Reads the columns of a part.
     ///
     /// # Errors
-    /// [`PartError`] if the file is damaged or cannot be read.
+    /// [`PartError`] if the file is not a part of this sweep as it was written, or cannot be read.
     pub fn read(&self, points: &Range<u64>) -> Result<Vec<Column>, PartError> {
-        let file = self.file(points);
-        let refuse = |why: String| PartError {
-            file: file.clone(),
-            why,
-        };
-        let rows = usize::try_from(points.end - points.start)
-            .map_err(|_| refuse("too long".to_owned()))?;
-        let mut reader = csv::ReaderBuilder::new()
-            .flexible(true)
-            .has_headers(false)
-            .from_path(&file)
-            .map_err(|e| refuse(e.to_string()))?;
-        let mut columns = Vec::new();
-        for record in reader.records() {
-            let record = record.map_err(|e| refuse(e.to_string()))?;
-            let (Some(name), Some(kind)) = (record.get(0), record.get(1).and_then(Kind::of)) else {
-                return Err(refuse("a record without a name and a kind".to_owned()));
-            };
-            let mut texts: Vec<_> = record.iter().skip(2).map(str::to_owned).collect();
-            let cells = match (texts.len(), rows) {
-                (count, rows) if count == rows => Cells::Each(texts),
-                (1, _) => Cells::Constant(texts.swap_remove(0)),
-                (count, _) => {
-                    return Err(refuse(format!("{name} has {count} cells for {rows} rows")));
-                }
-            };
-            columns.push(Column {
-                name: name.to_owned(),
-                kind,
-                cells,
-            });
-        }
-        if columns.is_empty() {
-            return Err(refuse("it is empty".to_owned()));
-        }
-        Ok(columns)
+        let bytes = self.bytes(points)?;
+        let read = format::read(&bytes, points).map_err(|why| self.refuse(points, why))?;
+        Ok(read.1)
     }
 
-    /// Copies the parts of another folder, each whole or not at all.
+    /// Reads and verifies a part: checksum, sweep, shard and points.
+    fn bytes(&self, points: &Range<u64>) -> Result<Vec<u8>, PartError> {
+        let refuse = |why: String| self.refuse(points, why);
+        let file = self.file(points);
+        let metadata = fs::symlink_metadata(&file).map_err(|e| refuse(e.to_string()))?;
+        if !metadata.is_file() {
+            return Err(refuse("this is not a regular file".to_owned()));
+        }
+        if metadata.len() > format::MOST_BYTES {
+            return Err(refuse("this is larger than any part".to_owned()));
+        }
+        let bytes = fs::read(&file).map_err(|e| refuse(e.to_string()))?;
+        let (header, _) = format::read(&bytes, points).map_err(refuse)?;
+        let Header { sweep, shard, .. } = header;
+        if sweep != self.sweep {
+            return Err(refuse("this is a part of another sweep".to_owned()));
+        }
+        let of_shard = shard.points(self.runs);
+        if points.start < of_shard.start || points.end > of_shard.end {
+            let why = format!(
+                "points {} to {} are not of shard {shard}",
+                points.start,
+                points.end - 1
+            );
+            return Err(refuse(why));
+        }
+        Ok(bytes)
+    }
+
+    /// Copies the parts of another folder, each verified, and whole or not at all.
     ///
     /// # Errors
-    /// If a part cannot be read or written.
+    /// If a part cannot be read or written, or is not of this sweep.
     pub fn copy_from(&self, other: &Self) -> io::Result<()> {
-        for points in other.points()? {
-            let mut copy = scratch_file(&self.folder)?;
-            io::copy(&mut fs::File::open(other.file(&points))?, &mut copy)?;
-            copy.as_file().sync_data()?;
-            copy.persist(self.file(&points))?;
+        for points in other.verified()? {
+            let bytes = other.bytes(&points).map_err(io::Error::other)?;
+            self.put(&points, &bytes)?;
         }
         Ok(())
     }
 
-    /// Removes the folder with all parts.
+    /// Removes the parts, and what a killed program has left of this sweep; no other file.
     ///
     /// # Errors
-    /// If the folder cannot be removed.
+    /// If a part cannot be removed.
     pub fn remove(&self) -> io::Result<()> {
-        match fs::remove_dir_all(&self.folder) {
-            Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(()),
-            outcome => outcome,
+        for points in self.points()? {
+            if self.bytes(&points).is_ok() {
+                fs::remove_file(self.file(&points))?;
+            }
         }
+        let prefix = self.temporary_prefix();
+        for name in self.names()? {
+            if name.starts_with(&prefix) {
+                fs::remove_file(self.folder.join(name))?;
+            }
+        }
+        Ok(())
     }
+}
+
+/// Name of the part with these points.
+fn name_of(points: &Range<u64>) -> String {
+    format!("{:010}-{:010}.csv", points.start, points.end)
 }
 
 /// Parses the points from the name of a part.
 fn points_of(name: &str) -> Option<Range<u64>> {
     let (first, end) = name.strip_suffix(".csv")?.split_once('-')?;
     let points = first.parse().ok()?..end.parse().ok()?;
-    (points.start < points.end).then_some(points)
+    // No other spelling.
+    (points.start < points.end && name_of(&points) == name).then_some(points)
 }
 
 /// Returns the ranges of `wanted` that no part of `there` covers. `there` is sorted by its starts.
@@ -311,83 +369,4 @@ pub fn missing(wanted: Range<u64>, there: &[Range<u64>]) -> Vec<Range<u64>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::row::Cell;
-
-    fn row(index: u64) -> Row {
-        let mut cells = vec![
-            ("same".to_owned(), Cell::Number(0.1)),
-            (
-                "count".to_owned(),
-                Cell::Whole(-7 * i64::try_from(index).unwrap()),
-            ),
-            (
-                "a, \"quoted\"".to_owned(),
-                Cell::Text(format!("x\n{index}")),
-            ),
-        ];
-        if index % 2 == 1 {
-            cells.push(("odd".to_owned(), Cell::Number(f64::NAN)));
-        }
-        Row { index, cells }
-    }
-
-    #[test]
-    fn what_is_written_is_read_and_neighbours_share_a_part() {
-        let home = tempfile::tempdir().unwrap();
-        let parts = Parts::in_folder(home.path().to_owned());
-        assert!(parts.points().unwrap().is_empty());
-        let rows: Vec<_> = [4, 5, 6, 9, 2].map(row).into();
-        parts.write(&rows).unwrap();
-        assert_eq!(parts.points().unwrap(), [2..3, 4..7, 9..10]);
-        let columns = parts.read(&(4..7)).unwrap();
-        assert_eq!(columns[0].cells, Cells::Constant("0.1".to_owned()));
-        assert_eq!(columns[1].cells.get(2), "-42");
-        assert_eq!(columns[2].cells.get(1), "x\n5");
-        assert_eq!(
-            columns[3].cells,
-            Cells::Each(["", "NaN", ""].map(str::to_owned).into())
-        );
-        parts.remove().unwrap();
-        assert!(parts.points().unwrap().is_empty());
-    }
-
-    #[test]
-    fn gaps_are_what_is_missing() {
-        type Points<'a> = &'a [(u64, u64)];
-        let ranges = |points: Points<'_>| -> Vec<Range<u64>> {
-            points.iter().map(|&(start, end)| start..end).collect()
-        };
-        let cases: [(Points<'_>, Points<'_>); 5] = [
-            (&[], &[(10, 20)]),
-            (&[(0, 30)], &[]),
-            (&[(10, 12), (12, 13), (15, 16)], &[(13, 15), (16, 20)]),
-            (&[(0, 11), (5, 12), (19, 25)], &[(12, 19)]),
-            (&[(0, 5), (25, 30)], &[(10, 20)]),
-        ];
-        for (there, gaps) in cases {
-            assert_eq!(missing(10..20, &ranges(there)), ranges(gaps), "{there:?}");
-        }
-    }
-
-    #[test]
-    fn a_damaged_part_is_told() {
-        let home = tempfile::tempdir().unwrap();
-        let parts = Parts::in_folder(home.path().to_owned());
-        let damaged = [
-            ("", "empty"),
-            ("a,number,1,2\n", "2 cells for 3 rows"),
-            ("a\n", "without a name"),
-            ("a,colour,1,2,3\n", "without a name"),
-        ];
-        for (text, word) in damaged {
-            fs::write(parts.file(&(0..3)), text).unwrap();
-            let error = parts.read(&(0..3)).unwrap_err().to_string();
-            assert!(
-                error.contains(word) && error.contains("0000000003.csv"),
-                "{error}"
-            );
-        }
-    }
-}
+mod tests;

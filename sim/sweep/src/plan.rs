@@ -2,14 +2,17 @@
 
 use crate::design::Design;
 use crate::row::Row;
+use crepitus_files::output::hex;
 use crepitus_scene::run::RunError;
 use crepitus_scene::shipped::Source;
 use crepitus_scene::{Overrides, Scene, SceneError, Summary};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::fmt::Write;
+use std::fmt;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::str::FromStr;
 
 /// Plan of a sweep. Equal plans have equal rows, on any computer.
 #[derive(Clone, Debug)]
@@ -39,6 +42,26 @@ pub struct Identity {
     pub sha256: String,
 }
 
+impl Identity {
+    /// Returns the SHA-256 of everything that tells this sweep from another, in hex digits.
+    #[must_use]
+    pub fn id(&self) -> String {
+        let mut sha = Sha256::new();
+        let mut add = |text: &str| {
+            sha.update((text.len() as u64).to_le_bytes());
+            sha.update(text);
+        };
+        add(&self.crepitus_version);
+        add(&self.scene);
+        add(&self.title);
+        add(&self.paths.join("\n"));
+        add(&self.runs.to_string());
+        add(&format!("{:?}", self.design_seed));
+        add(&self.sha256);
+        hex(&sha.finalize())
+    }
+}
+
 /// Part `number` of `of` of a sweep. The parts are disjoint, complete and of sizes that differ by
 /// at most one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +71,9 @@ pub struct Shard {
 }
 
 impl Shard {
+    /// The whole sweep.
+    pub const WHOLE: Self = Self { number: 1, of: 1 };
+
     /// Creates shard `number`, from 1, of `of`.
     ///
     /// # Errors
@@ -69,6 +95,27 @@ impl Shard {
             u64::try_from(point).unwrap_or(runs)
         };
         upto(self.number - 1)..upto(self.number)
+    }
+}
+
+/// Formats the shard as `I/N`.
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
+}
+
+/// Parses `I/N`.
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let parts = text.split_once('/');
+        let number = |text: &str| text.trim().parse::<u64>().ok();
+        match parts.and_then(|(i, n)| Some((number(i)?, number(n)?))) {
+            Some((i, n)) => Self::new(i, n),
+            None => Err("expected I/N, for example 3/16".to_owned()),
+        }
     }
 }
 
@@ -116,6 +163,16 @@ impl Plan {
     pub fn scene(&self, point: u64) -> Result<Scene, SceneError> {
         let values = self.design.point(point);
         self.scene_with(self.design.paths().into_iter().zip(values))
+    }
+
+    /// Returns the files that the scene is read from.
+    pub fn inputs(&self) -> Vec<PathBuf> {
+        let scene = self.source.scene(&self.overrides).ok();
+        let data = scene.and_then(|scene| scene.data).map(|data| data.file);
+        [Some(self.source.file.clone()), data]
+            .into_iter()
+            .flatten()
+            .collect()
     }
 
     /// Runs a point by `run`. A failed run gives a row with its reason.
@@ -186,12 +243,7 @@ impl Plan {
         add(&format!("{:?}", self.overrides));
         add(scene.data.as_ref().map_or("", |data| data.sha256.as_str()));
         add(&format!("{:?}", self.design));
-        let mut text = String::with_capacity(64);
-        for byte in sha.finalize() {
-            // Writing to a String cannot fail.
-            let _ = write!(text, "{byte:02x}");
-        }
-        text
+        hex(&sha.finalize())
     }
 }
 

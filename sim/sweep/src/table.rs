@@ -3,14 +3,18 @@
 #[cfg(feature = "parquet")]
 mod parquet;
 
-use crate::parts::{Column, Kind, PartError, Parts, missing, scratch_file};
+use crate::parts::{Column, Kind, PartError, Parts, missing};
 use crate::plan::Identity;
 use crate::row::FAILURE;
+use crepitus_files::output::{OutputError, hex, sha256};
+use sha2::{Digest, Sha256};
 use std::collections::HashMap;
+use std::fs::File;
 use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use tempfile::NamedTempFile;
 
 /// Column of the point's number.
 pub const INDEX: &str = "index";
@@ -77,9 +81,27 @@ pub enum TableError {
         /// First missing points, as ranges.
         ranges: String,
     },
-    /// A part cannot be read.
+    /// A part cannot be read, or is not as it was written.
     #[error(transparent)]
     Part(#[from] PartError),
+    /// Two parts have other rows for the same point.
+    #[error("{} and {} have other rows for point {point}: move away the one that is wrong, and the sweep runs its \
+             points again", parts[0].display(), parts[1].display())]
+    Doubled {
+        /// The parts.
+        parts: [PathBuf; 2],
+        /// The point.
+        point: u64,
+    },
+    /// The table, read back, is not what was written.
+    #[error(
+        "the table, read back from the disk, is not what was written: the parts are kept; check the disk, and \
+             give the same command again"
+    )]
+    ReadBack,
+    /// Something is in the way.
+    #[error(transparent)]
+    Output(#[from] OutputError),
     /// A file cannot be written, or the caller has cancelled ([`io::ErrorKind::Interrupted`]).
     #[error(transparent)]
     Io(#[from] io::Error),
@@ -94,6 +116,21 @@ pub struct Written {
     pub bytes: u64,
     /// Number of failed runs.
     pub failed: u64,
+    /// Number of points that two parts have, with the same rows.
+    pub doubled: u64,
+}
+
+/// A complete table that is not in its place yet.
+#[derive(Debug)]
+pub struct Table {
+    /// The file, which is removed if it is dropped.
+    pub file: NamedTempFile,
+    /// Its size, bytes.
+    pub bytes: u64,
+    /// Number of failed runs.
+    pub failed: u64,
+    /// Number of points that two parts have, with the same rows.
+    pub doubled: u64,
 }
 
 /// A column of the table.
@@ -124,7 +161,7 @@ impl Chunk {
     }
 }
 
-/// Writes the table of a sweep into `folder`, whole or not at all. `progress` gets the completed
+/// Writes the table of a sweep beside its parts, and reads it back. `progress` gets the completed
 /// share, 0 to 1, and cancels by returning false.
 ///
 /// # Errors
@@ -132,43 +169,123 @@ impl Chunk {
 pub fn write(
     parts: &Parts,
     identity: &Identity,
-    folder: &Path,
     format: Format,
     progress: &mut dyn FnMut(f64) -> bool,
-) -> Result<Written, TableError> {
+) -> Result<Table, TableError> {
     let there = parts.points()?;
     check_complete(&there, identity.runs)?;
-    let table = Table {
+    let doubled = doubled(parts, &there)?;
+    let rows = Rows {
         parts,
         points: without_overlaps(&there, identity.runs),
         fields: Vec::new(),
     };
-    let table = table.with_fields(&mut |share| progress(share / 2.0))?;
-    let failed = table.fields.iter().position(|f| f.name == FAILURE);
+    let rows = rows.with_fields(&mut |share| progress(share / 2.0))?;
+    let failed = rows.fields.iter().position(|f| f.name == FAILURE);
     let mut count = 0;
-    let mut file = scratch_file(parts.folder())?;
+    let file = parts.temporary()?;
     let mut seen = |chunk: &Chunk, share: f64| {
         let reasons = failed
             .map(|field| (0..chunk.rows()).filter(move |&r| !chunk.cell(field, r).is_empty()));
         count += reasons.map_or(0, Iterator::count) as u64;
         progress(0.5 + share / 2.0)
     };
+    let mut hashing = Hashing::of(file.reopen()?);
     match format {
-        Format::Csv => table.write_csv(file.as_file_mut(), &mut seen)?,
+        Format::Csv => rows.write_csv(&mut hashing, &mut seen)?,
         #[cfg(feature = "parquet")]
-        Format::Parquet => table.write_parquet(file.as_file_mut(), identity, &mut seen)?,
+        Format::Parquet => rows.write_parquet(&mut hashing, identity, &mut seen)?,
         #[cfg(not(feature = "parquet"))]
         Format::Parquet => return Err(io::Error::from(io::ErrorKind::Unsupported).into()),
     }
-    file.as_file().sync_all()?;
+    hashing.read_back(file.path())?;
     let bytes = file.as_file().metadata()?.len();
-    let target = folder.join(format.file());
-    file.persist(&target).map_err(io::Error::from)?;
-    Ok(Written {
-        file: target,
+    Ok(Table {
+        file,
         bytes,
         failed: count,
+        doubled,
     })
+}
+
+/// File whose content is hashed on the way.
+struct Hashing {
+    file: File,
+    sha: Sha256,
+}
+
+impl Hashing {
+    fn of(file: File) -> Self {
+        let sha = Sha256::new();
+        Self { file, sha }
+    }
+
+    /// Checks that the disk, asked for the file at this path, has what was written.
+    fn read_back(self, path: &Path) -> Result<(), TableError> {
+        self.file.sync_all()?;
+        if sha256(File::open(path)?)? == hex(&self.sha.finalize()) {
+            Ok(())
+        } else {
+            Err(TableError::ReadBack)
+        }
+    }
+}
+
+impl Write for Hashing {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.file.write(bytes)?;
+        self.sha.update(bytes.get(..count).unwrap_or_default());
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// Counts the points that several parts have; all have to have the same rows of them.
+fn doubled(parts: &Parts, there: &[Range<u64>]) -> Result<u64, TableError> {
+    let (mut count, mut end) = (0, 0);
+    for (number, part) in there.iter().enumerate() {
+        if part.start < end {
+            count += part.end.min(end) - part.start;
+            let overlapping = |other: &&Range<u64>| other.end > part.start;
+            for other in there[..number].iter().filter(overlapping) {
+                compare(parts, other, part)?;
+            }
+        }
+        end = end.max(part.end);
+    }
+    Ok(count)
+}
+
+/// Rejects two parts that have other rows for a point that both have.
+fn compare(parts: &Parts, a: &Range<u64>, b: &Range<u64>) -> Result<(), TableError> {
+    let place = |point: u64, part: &Range<u64>| usize::try_from(point - part.start).unwrap_or(0);
+    let by_name = |part: &Range<u64>| -> Result<HashMap<String, Column>, PartError> {
+        let columns = parts.read(part)?.into_iter();
+        Ok(columns
+            .map(|column| (column.name.clone(), column))
+            .collect())
+    };
+    let (of_a, of_b) = (by_name(a)?, by_name(b)?);
+    for point in a.start.max(b.start)..a.end.min(b.end) {
+        let cell = |columns: &HashMap<String, Column>, name: &str, part: &Range<u64>| {
+            let column = columns.get(name);
+            column.map_or(String::new(), |c| {
+                c.cells.get(place(point, part)).to_owned()
+            })
+        };
+        let names = of_a.keys().chain(of_b.keys());
+        let differs = |name: &&String| cell(&of_a, name, a) != cell(&of_b, name, b);
+        if names.into_iter().any(|name| differs(&name)) {
+            return Err(TableError::Doubled {
+                parts: [parts.file(a), parts.file(b)],
+                point,
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Rejects parts that do not cover all runs.
@@ -210,14 +327,14 @@ fn without_overlaps(there: &[Range<u64>], runs: u64) -> Vec<(Range<u64>, Range<u
     kept
 }
 
-struct Table<'p> {
+struct Rows<'p> {
     parts: &'p Parts,
     /// Parts, each with its points that go into the table.
     points: Vec<(Range<u64>, Range<u64>)>,
     fields: Vec<Field>,
 }
 
-impl Table<'_> {
+impl Rows<'_> {
     /// Collects names and kinds of all columns.
     fn with_fields(mut self, progress: &mut dyn FnMut(f64) -> bool) -> Result<Self, TableError> {
         let mut places: HashMap<String, usize> = HashMap::new();

@@ -33,13 +33,15 @@ impl ServedName {
     fn at(link: PathBuf) -> io::Result<Self> {
         // Another program may just be looking.
         const TRIES: u32 = 20;
-        let lock = File::options()
-            .create(true)
-            .truncate(false)
-            .write(true)
-            .open(lock_of(&link))?;
         for _ in 0..TRIES {
+            let lock = File::options()
+                .create(true)
+                .truncate(false)
+                .write(true)
+                .open(lock_of(&link))?;
             match lock.try_lock() {
+                // The program before has just removed it.
+                Ok(()) if !is_at(&lock, &lock_of(&link)) => {}
                 Ok(()) => {
                     // What the program before has said.
                     lock.set_len(0)?;
@@ -73,6 +75,31 @@ impl ServedName {
     pub fn publish(&self, pty: &Path) -> io::Result<()> {
         (&self.lock).write_all(format!("{}\n", pty.display()).as_bytes())
     }
+}
+
+/// Removes the lock's file, as long as it is locked.
+impl Drop for ServedName {
+    fn drop(&mut self) {
+        let path = lock_of(&self.link);
+        if cfg!(unix) && is_at(&self.lock, &path) {
+            // One that stays behind is taken by the next program.
+            let _ = fs::remove_file(path);
+        }
+    }
+}
+
+/// Returns whether this open file is the one at a path.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let identity = |file: io::Result<fs::Metadata>| file.ok().map(|m| (m.dev(), m.ino()));
+    let own = identity(file.metadata());
+    own.is_some() && own == identity(fs::metadata(path))
+}
+
+#[cfg(not(unix))]
+fn is_at(_: &File, path: &Path) -> bool {
+    path.exists()
 }
 
 /// A link with the name of a simulated device that does not lead to it: somebody has replaced it.
@@ -167,5 +194,6 @@ mod tests {
         assert_eq!(error.kind(), io::ErrorKind::AddrInUse);
         drop(served);
         assert_eq!(standing(&link), Standing::Ended);
+        assert!(!lock_of(&link).exists());
     }
 }

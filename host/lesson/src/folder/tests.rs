@@ -18,6 +18,7 @@ fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let mut names: Vec<_> = entries
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name != crepitus_files::output::MARKER)
         .collect();
     names.sort();
     names
@@ -95,6 +96,24 @@ fn a_file_that_cannot_be_written_leaves_the_old_one() {
     fs::remove_dir_all(folder.path()).unwrap();
     assert!(folder.save(&session).is_err());
     assert!(folder.save_report(&session, &str::to_owned).is_err());
+}
+
+/// A teacher marks answers in a spreadsheet while the lesson goes on.
+#[test]
+fn an_edited_table_stays_and_the_answers_are_in_the_session() {
+    let parent = tempfile::tempdir().unwrap();
+    let mut session = session("x");
+    let folder = SessionFolder::create(parent.path(), &session).unwrap();
+    let answers = folder.path().join(ANSWERS);
+    fs::write(&answers, "edited").unwrap();
+    session.lesson.start().unwrap();
+    let error = folder.save(&session).unwrap_err().to_string();
+    assert!(error.contains("answers.csv (changed since"), "{error}");
+    assert_eq!(fs::read_to_string(&answers).unwrap(), "edited");
+    assert_eq!(Session::read(folder.path()).unwrap(), session);
+    fs::rename(&answers, parent.path().join("edited.csv")).unwrap();
+    folder.save(&session).unwrap();
+    folder.save(&session).unwrap();
 }
 
 #[test]

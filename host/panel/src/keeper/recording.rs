@@ -3,9 +3,12 @@
 use super::Keeper;
 use crate::shared::Outcome;
 use crepitus_client::Transport;
+use crepitus_files::output::{folder_of, temporary_in};
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, Values};
-use crepitus_recording::{Begin, Damage, Metadata, Recorder, Recording, new_file, parquet_writer};
+use crepitus_recording::{
+    Begin, Damage, Metadata, Recorder, Recording, is_recording, parquet_writer,
+};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::thread::{self, JoinHandle};
@@ -17,6 +20,8 @@ const MOST_NAME: usize = 60;
 /// A recording in progress.
 pub(super) struct Recorded {
     recorder: Recorder,
+    /// Id of the recording: what has its file's name in the end may be another one.
+    id: String,
     began: Instant,
     /// A block has come.
     has_begun: bool,
@@ -87,6 +92,7 @@ impl<T: Transport> Keeper<'_, T> {
         let recorder = Recorder::create(file, &metadata).map_err(|error| error.to_string())?;
         self.recording = Some(Recorded {
             recorder,
+            id: metadata.id,
             began: Instant::now(),
             has_begun: false,
             is_announced: false,
@@ -153,12 +159,15 @@ impl<T: Transport> Keeper<'_, T> {
         let file = recorded.recorder.path().to_owned();
         let is_empty = recorded.recorder.totals().received == 0;
         if is_empty {
+            let id = recorded.id.clone();
             drop(recorded);
-            let _ = std::fs::remove_file(&file);
+            if is_recording(&file, &id) {
+                let _ = std::fs::remove_file(&file);
+            }
             return;
         }
         match recorded.recorder.finish() {
-            Ok(_) => self.sealing.push(seal(file)),
+            Ok(_) => self.sealing.push(seal(file, recorded.id)),
             Err(error) => self.message = Some(error.to_string()),
         }
     }
@@ -174,16 +183,19 @@ impl<T: Transport> Keeper<'_, T> {
 }
 
 /// A thread that replaces a finished recording by its Parquet file, if this program can
-/// write one. If that fails, the recording stays as it is.
-fn seal(file: PathBuf) -> JoinHandle<Result<(), String>> {
+/// write one. If that fails, or another file has its name now, the file stays as it is.
+fn seal(file: PathBuf, id: String) -> JoinHandle<Result<(), String>> {
     thread::spawn(move || {
         let Some(write) = parquet_writer() else {
             return Ok(());
         };
         let failed = |e: &dyn std::fmt::Display| format!("{}: {e}", file.display());
         let recording = Recording::open(&file, Damage::Refuse).map_err(|e| failed(&e))?;
-        let made = new_file(&file).map_err(|e| failed(&e))?;
+        let made = temporary_in(folder_of(&file)).map_err(|e| failed(&e))?;
         write(&recording, made.as_file(), &mut |_| true).map_err(|e| failed(&e))?;
+        if !is_recording(&file, &id) {
+            return Err(failed(&"another file has this name now"));
+        }
         made.persist(&file).map_err(|e| failed(&e.error))?;
         Ok(())
     })

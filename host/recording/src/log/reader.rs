@@ -381,7 +381,7 @@ impl<R: BufRead> LogReader<R> {
                 "Checkpoint {} is missing or out of order before tick {tick}",
                 self.checkpoints
             ));
-        } else if !is_noted && crate::hex(&sum) != checkpoint.sha256 {
+        } else if !is_noted && crepitus_files::output::hex(&sum) != checkpoint.sha256 {
             self.findings.add(format!(
                 "What stands between ticks {from} and {tick} is not what was written"
             ));

@@ -6,6 +6,7 @@ use super::{CHECKPOINT_BLOCKS, MAGIC};
 use crate::books::{Begin, Ledger, Totals};
 use crate::metadata::Metadata;
 use crate::parameters::named_values;
+use crepitus_files::output::{folder_of, sync_folder_of, temporary_in};
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, Values};
 use sha2::{Digest, Sha256};
@@ -71,7 +72,7 @@ impl Recorder {
             source,
         };
         let head = head(metadata).map_err(failed)?;
-        let mut file = crate::new_file(path).map_err(failed)?;
+        let mut file = temporary_in(folder_of(path)).map_err(failed)?;
         file.write_all(&head).map_err(failed)?;
         file.as_file().sync_all().map_err(failed)?;
         let file = file
@@ -81,7 +82,7 @@ impl Recorder {
                 _ => failed(error.error),
             })?;
         // And its name: a power cut in the first second leaves a file, too.
-        crate::sync_folder_of(path).map_err(failed)?;
+        sync_folder_of(path).map_err(failed)?;
         Ok(Self::behind(&head, Background::new(file), path, metadata))
     }
 }
@@ -238,7 +239,7 @@ impl<D: Disk> Recorder<D> {
         let checkpoint = Entry::Checkpoint(Checkpoint {
             id: self.id.clone(),
             number: self.checkpoints,
-            sha256: crate::hex(&sum),
+            sha256: crepitus_files::output::hex(&sum),
             totals: self.totals(),
             is_end,
         });

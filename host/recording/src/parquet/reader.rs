@@ -334,7 +334,7 @@ fn sum_is_right(mut file: &File, footer: Option<&(u64, Vec<u8>)>) -> io::Result<
         }
     }
     sum.update(&zeroed);
-    Ok(crate::hex(&sum.finalize()).as_bytes() == said)
+    Ok(crepitus_files::output::hex(&sum.finalize()).as_bytes() == said)
 }
 
 /// Renumbers rows where some are lost.

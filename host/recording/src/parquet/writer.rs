@@ -164,7 +164,7 @@ impl<'f> Writer<'f> {
         let footer_byte = output.length - output.group.len() as u64;
         let at = super::sum_place(&output.group)
             .ok_or_else(|| io::Error::other("the footer has no checksum"))?;
-        let sum = crate::hex(&output.sum.finalize());
+        let sum = crepitus_files::output::hex(&output.sum.finalize());
         let mut file = file;
         file.seek(SeekFrom::Start(footer_byte + at as u64))?;
         file.write_all(sum.as_bytes())?;

@@ -11,9 +11,10 @@ mod table;
 mod target;
 mod words;
 
+use crate::cli::Force;
 use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
-use crate::results;
+use crate::results::{self, REPORT};
 use crate::studying::{self, Watch};
 use clap::Args;
 use crepitus_study::accuracy::actuator::actuator_table;
@@ -70,6 +71,9 @@ pub(crate) struct Arguments {
     target: bool,
 
     #[command(flatten)]
+    force: Force,
+
+    #[command(flatten)]
     pictures: Pictures,
 
     /// Which solver is the cheapest that is accurate enough? For example torque=1e-2,interval=5e-4.
@@ -113,7 +117,17 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         (None, None) => Some(PathBuf::from("out/accuracy")),
         (None, Some(_)) => None,
     };
-    let folder = out.as_deref().map(results::folder).transpose()?;
+    let prepare = |out| {
+        let claim = arguments.force.claim("accuracy", &arguments.scene);
+        let is_whole = arguments.scene.is_none() && need.is_none();
+        let tables: &[_] = if is_whole {
+            &["points.csv", "symptoms.csv"]
+        } else {
+            &["points.csv"]
+        };
+        results::folder(out, claim, [&REPORT[..], tables].concat())
+    };
+    let folder = out.as_deref().map(prepare).transpose()?;
     // Fails before the work if the image cannot be built.
     let ladder = arguments.target.then(target::ladder).transpose()?;
     let mut study = study::run(&studied.plan, &mut Watch::new()).map_err(studying::failed)?;

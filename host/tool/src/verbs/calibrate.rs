@@ -16,7 +16,7 @@ mod watched;
 mod weight;
 mod zero;
 
-use crate::cli::{DeviceArguments, duration};
+use crate::cli::{DeviceArguments, Force, duration};
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crate::line::{Line, failure, open, open_in_real_time};
@@ -76,6 +76,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     out: Option<PathBuf>,
 
+    #[command(flatten)]
+    force: Force,
+
     /// Set what was found on the device, in one commit, and save it; only if no step is bad.
     #[arg(long)]
     apply: bool,
@@ -109,7 +112,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let weight = arguments.weight.weight()?;
     let person = Person::new(arguments.yes, arguments.for_s)?;
     let out = arguments.out.as_deref();
-    let prepared = out.map(folder).transpose()?;
+    let prepare = |out| {
+        let claim = arguments.force.claim("calibrate", [""; 0]);
+        folder(out, claim, results::NAMES)
+    };
+    let prepared = out.map(prepare).transpose()?;
     interrupt::listen();
     let line = if arguments.yes {
         open(&arguments.device)?

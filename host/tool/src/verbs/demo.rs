@@ -2,6 +2,7 @@
 //! the simulated leg.
 
 use super::report;
+use crate::cli::Force;
 use crate::failure::{Failure, print, print_json};
 use crate::following::{Arming, End, Follower, follow};
 use crate::interrupt;
@@ -11,11 +12,12 @@ use crate::pictures::Pictures;
 use crate::progress::Progress;
 use crate::recorded::{Recorded, extension};
 use crate::reported::Reported;
-use crate::results;
+use crate::results::{self, REPORT};
 use crate::wav::Wav;
 use clap::Args;
 use crepitus_client::{Begin, Client, RequestKind};
 use crepitus_connection::Simulated;
+use crepitus_files::output::Inputs;
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};
@@ -24,7 +26,6 @@ use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, preset};
 use serde_json::json;
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -42,6 +43,9 @@ pub(crate) struct Arguments {
     /// Folder for the recording and its report [default: out/demo].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+
+    #[command(flatten)]
+    force: Force,
 
     #[command(flatten)]
     pictures: Pictures,
@@ -69,11 +73,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .unwrap_or_else(|| PathBuf::from("out/demo"));
     let scene = shipped::scene(Path::new(SCENE), &Overrides::default())?;
     interrupt::listen();
-    let folder = results::folder(&out)?;
-    let name = Path::new("recording").with_extension(extension());
+    let name = format!("recording.{}", extension());
+    let claim = arguments.force.claim("demo", [""; 0]);
+    let folder = results::folder(&out, claim, [&REPORT[..], &[&name]].concat())?;
     let place = out.join(&name);
-    refuse_another(&place, &scene.title)?;
-    let file = folder.path_of(&name);
+    let file = folder.path_of(Path::new(&name));
     let duration = Duration::from_secs_f64(scene.duration_s);
     let device = Simulated::of(&scene).map_err(Failure::input)?;
     let narration = Narration { is_silent: as_json };
@@ -124,24 +128,10 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         pictures: &arguments.pictures,
         overlay: &Overlay::default(),
         wav: &Wav::default(),
+        force: arguments.force,
     };
-    let reported = report::write_into(folder, &recording, &out, &extras)?;
+    let reported = report::write_into(folder, &recording, &out, &extras, &Inputs::default())?;
     done(&reported, &out, &place, &client, begun.elapsed(), as_json)
-}
-
-/// The recording of an earlier demo is replaced; no other.
-fn refuse_another(file: &Path, title: &str) -> Result<(), Failure> {
-    if fs::symlink_metadata(file).is_err() {
-        return Ok(());
-    }
-    let earlier = Recording::open(file, Damage::Salvage);
-    if earlier.is_ok_and(|recording| recording.metadata().title == title) {
-        return Ok(());
-    }
-    Err(Failure::Input(format!(
-        "{} is not a demo's recording and would be replaced: name another folder with --out",
-        file.display()
-    )))
 }
 
 /// Waits until the drive reports that it has disarmed.

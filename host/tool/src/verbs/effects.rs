@@ -8,10 +8,10 @@ mod smallest;
 mod summary;
 mod table;
 
-use crate::cli::{key_and_value, set_once};
+use crate::cli::{Force, key_and_value, set_once};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::pictures::Pictures;
-use crate::results;
+use crate::results::{self, REPORT};
 use crate::studying::Watch;
 use clap::Args;
 use crepitus_scene::shipped;
@@ -58,6 +58,9 @@ pub(crate) struct Arguments {
     set: Vec<(String, String)>,
 
     #[command(flatten)]
+    force: Force,
+
+    #[command(flatten)]
     pictures: Pictures,
 }
 
@@ -80,7 +83,9 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         Some(out) => out.clone(),
         None => results::named_after(&plan.scene.file, "", "-effects")?,
     };
-    let folder = results::folder(&out)?;
+    let inputs = results::inputs(path, [&plan.scene], None);
+    let claim = arguments.force.claim("effects", inputs);
+    let folder = results::folder(&out, claim, [&REPORT[..], &["effects.csv"]].concat())?;
     let study = study_effects(&plan, &mut Watch::new()).map_err(|e| failed(&plan.scene, e))?;
     let summary = Summary::new(&study);
     results::write(

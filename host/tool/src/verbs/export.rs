@@ -1,9 +1,12 @@
 //! `crepitus export`: a recording in another format.
 
+use crate::cli::Force;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
-use crate::recorded::{Clash, beside, written};
+use crate::output::to_stderr;
+use crate::recorded::{beside, written};
 use clap::{Args, ValueEnum};
+use crepitus_files::output::{Inputs, NewFile};
 use crepitus_recording::{COLUMNS, Damage, Recording, Write, mcap_writer, parquet_writer};
 use serde_json::json;
 use std::fs::File;
@@ -61,9 +64,12 @@ pub(crate) struct Arguments {
     #[arg(long)]
     format: ExportFormat,
 
-    /// The new file; it must not exist [default: FILE with .csv, .mcap or .parquet appended].
+    /// The new file; `-` is standard output [default: FILE with .csv, .mcap or .parquet appended].
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+
+    #[command(flatten)]
+    force: Force,
 
     /// Keep what is readable of a damaged recording.
     #[arg(long)]
@@ -84,15 +90,24 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     } else {
         Damage::Refuse
     };
+    let out =
+        (arguments.out.clone()).unwrap_or_else(|| beside(&arguments.file, format.extension()));
+    let inputs = Inputs::of([&arguments.file]);
+    let new = NewFile::create(&out, arguments.force.force, &inputs)?;
+    let on_stdout = new.is_stdout();
+    if on_stdout && as_json {
+        return Err(Failure::input(
+            "--json and --out - would both write to standard output: name a file with --out",
+        ));
+    }
     let recording = Recording::open(&arguments.file, damage).map_err(Failure::input)?;
     let warnings = recording.warnings();
     if !as_json {
         warnings.iter().for_each(warn);
     }
-    let out =
-        (arguments.out.clone()).unwrap_or_else(|| beside(&arguments.file, format.extension()));
     interrupt::listen();
-    let rows = written(&recording, &out, Clash::Refuse, writer)?;
+    let rows = written(&recording, &out, new.as_file(), writer)?;
+    new.persist()?;
     let totals = recording.books().totals;
     if as_json {
         return print_json(
@@ -103,7 +118,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         ExportFormat::Mcap => "rows, one a millisecond",
         ExportFormat::Csv | ExportFormat::Parquet => "samples",
     };
-    print(&format!("{}: {rows} {what}\n", out.display()))
+    let text = format!("{}: {rows} {what}", out.display());
+    if on_stdout {
+        to_stderr(&text);
+        return Ok(());
+    }
+    print(&(text + "\n"))
 }
 
 /// Rows between two updates of the progress.

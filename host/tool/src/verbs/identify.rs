@@ -5,12 +5,14 @@ pub(crate) mod recordings;
 mod results;
 mod table;
 
-use crate::cli::{above_zero, tolerance};
+use crate::cli::{Force, above_zero, tolerance};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
+use crate::output::to_stderr;
 use crate::progress::Progress;
 use crate::results::folder;
 use clap::{Args, ValueHint};
+use crepitus_files::output::NewFile;
 use crepitus_identify::DEVIATIONS;
 use crepitus_identify::brace::{Refusal, Weight, identify};
 use serde_json::json;
@@ -72,9 +74,12 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     out: Option<PathBuf>,
 
-    /// File for the identified values as [effects.…] tables of a scene; it must not exist.
+    /// File for the identified values as [effects.…] tables of a scene; `-` is standard output.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     scene_out: Option<PathBuf>,
+
+    #[command(flatten)]
+    force: Force,
 }
 
 /// Standard deviation, as a share, of a 95 % interval in percent.
@@ -100,13 +105,20 @@ impl Arguments {
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let weight = arguments.weight()?;
     let torque_deviation = deviation("--torque-tolerance", arguments.torque_tolerance)?;
-    if let Some(file) = &arguments.scene_out {
-        results::is_free(file)?;
+    let claim = arguments.force.claim("identify", &arguments.recordings);
+    let scene_file = |file| NewFile::create(file, claim.force, &claim.inputs);
+    let scene_file = arguments.scene_out.as_deref().map(scene_file).transpose()?;
+    let on_stdout = scene_file.as_ref().is_some_and(NewFile::is_stdout);
+    if on_stdout && as_json {
+        return Err(Failure::input(
+            "--json and --scene-out - would both write to standard output: name a file with --scene-out",
+        ));
     }
+    let out = arguments.out.as_deref();
+    let prepare = |out| folder(out, claim.clone(), results::NAMES);
+    let prepared = out.map(prepare).transpose()?;
     interrupt::listen();
     let recordings = recordings::read(&arguments.recordings)?;
-    let out = arguments.out.as_deref();
-    let prepared = out.map(folder).transpose()?;
     let mut progress = Progress::of_study();
     let found = identify(&recordings, &weight, torque_deviation, &mut |share| {
         progress.reached(share);
@@ -121,7 +133,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let (Some(out), Some(folder)) = (out, prepared) {
         results::write(out, folder, &brace, &summary)?;
     }
-    if let Some(file) = &arguments.scene_out {
+    if let Some(file) = scene_file {
         results::write_scene(file, &brace)?;
     }
     if as_json {
@@ -130,12 +142,16 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         );
     }
     brace.notes.iter().for_each(warn);
-    print(&table::text(&brace))?;
+    let mut text = table::text(&brace);
     if let Some(out) = out {
-        print(&format!("report: {}\n", out.join(results::PAGE).display()))?;
+        text = format!("{text}report: {}\n", out.join(results::PAGE).display());
     }
-    match &arguments.scene_out {
-        Some(file) => print(&format!("tables of a scene: {}\n", file.display())),
-        None => Ok(()),
+    if on_stdout {
+        to_stderr(text.trim_end());
+        return Ok(());
     }
+    if let Some(file) = &arguments.scene_out {
+        text = format!("{text}tables of a scene: {}\n", file.display());
+    }
+    print(&text)
 }

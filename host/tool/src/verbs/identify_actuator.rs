@@ -8,7 +8,7 @@ mod recorded;
 mod results;
 mod table;
 
-use crate::cli::DeviceArguments;
+use crate::cli::{DeviceArguments, Force};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::line::{Line, connect, failure};
 use crate::results::folder;
@@ -71,6 +71,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
+    #[command(flatten)]
+    force: Force,
+
     /// Set the identified parameters on the device, in one commit; `params save` keeps them.
     #[arg(long)]
     apply: bool,
@@ -87,9 +90,18 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let chirp = arguments.chirp.played()?;
     let masses = arguments.masses.weighed()?;
-    let files = arguments.recordings.read(masses.added.is_some())?;
     let out = arguments.out.as_deref();
-    let prepared = out.map(folder).transpose()?;
+    let prepare = |out| {
+        let inputs = arguments.recordings.files();
+        let claim = arguments.force.claim("identify-actuator", inputs);
+        folder(
+            out,
+            claim,
+            results::names(arguments.recordings.files().next().is_none()),
+        )
+    };
+    let prepared = out.map(prepare).transpose()?;
+    let files = arguments.recordings.read(masses.added.is_some())?;
     let needs_device = files.is_none() || arguments.apply || arguments.device.device.is_some();
     let mut client = needs_device
         .then(|| connect(&arguments.device))

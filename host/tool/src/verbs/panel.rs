@@ -9,8 +9,9 @@ use crate::interrupt;
 use crate::line::{Line, failure, open_in_real_time};
 use clap::Args;
 use crepitus_client::Client;
+use crepitus_files::output::temporary_in;
 use crepitus_panel::{Links, Panel, Settings, Source};
-use crepitus_recording::{Damage, Recording, new_file};
+use crepitus_recording::{Damage, Recording};
 use program::ThisProgram;
 use serde_json::json;
 use std::fs;
@@ -102,7 +103,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 /// Checks that files can be stored in a folder; a lesson would find out too late.
 fn probe(folder: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder)
-        .and_then(|()| new_file(&folder.join("probe")).map(drop))
+        .and_then(|()| temporary_in(folder).map(drop))
         .map_err(|e| {
             let text = Failure::at(folder, "--sessions: cannot store anything there", &e);
             Failure::Input(text.into_text() + ": name another folder")

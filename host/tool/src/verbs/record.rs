@@ -8,6 +8,7 @@ use crate::line::connect_to_arm;
 use crate::recorded::{Recorded, print_ended, report_command};
 use clap::Args;
 use crepitus_client::Unheard;
+use crepitus_files::output::{Inputs, NewFile, OutputError, is_stdout};
 use crepitus_recording::Totals;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -81,6 +82,19 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         return Err(Failure::input("--for: expected a time above 0, got 0"));
     }
     let file = &arguments.file;
+    if is_stdout(file) {
+        return Err(Failure::Input(format!(
+            "{}: a recording is a file, not standard output: name one, or print samples with `crepitus stream`",
+            file.display()
+        )));
+    }
+    // Before the device is looked for.
+    NewFile::create(file, false, &Inputs::default()).map_err(|error| match error {
+        OutputError::Exists { .. } => {
+            Failure::Input(format!("{error}: choose another name, or remove it"))
+        }
+        error => error.into(),
+    })?;
     let mut client = connect_to_arm(&arguments.device, arguments.arming)?;
     let mut recorded = Recorded::begin(&mut client, file, &arguments.title)?;
     let end = follow(

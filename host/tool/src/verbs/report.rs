@@ -2,24 +2,25 @@
 
 mod tables;
 
-use crate::failure::{Failure, print, print_json};
+use crate::cli::Force;
+use crate::failure::{Failure, print_json};
 use crate::interrupt;
 use crate::overlay::{self, Overlay};
 use crate::pictures::Pictures;
 use crate::progress::Progress;
 use crate::recorded::beside;
 use crate::reported::Reported;
-use crate::results::{self, footer, report_files};
+use crate::results::{self, REPORT, footer, report_files};
 use crate::sections::{counts, torque_levels};
 use crate::wav::Wav;
 use clap::Args;
+use crepitus_files::output::{Folder, Inputs};
 use crepitus_protocol::TICK_S;
 use crepitus_recording::{
     Analysis, ArmingPushes, Books, Damage, History, Recording, RecordingSummary, ReportColumns,
     Row, Step, seconds,
 };
 use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
-use crepitus_scene::output::Folder;
 use std::path::{Path, PathBuf};
 
 /// Rows between two updates of the progress.
@@ -51,6 +52,9 @@ pub(crate) struct Arguments {
     salvage: bool,
 
     #[command(flatten)]
+    force: Force,
+
+    #[command(flatten)]
     pictures: Pictures,
 
     #[command(flatten)]
@@ -66,6 +70,7 @@ pub(super) struct Extras<'a> {
     pub(super) pictures: &'a Pictures,
     pub(super) overlay: &'a Overlay,
     pub(super) wav: &'a Wav,
+    pub(super) force: Force,
 }
 
 /// Writes the report of a recording.
@@ -85,22 +90,30 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         pictures: &arguments.pictures,
         overlay: &arguments.overlay,
         wav: &arguments.wav,
+        force: arguments.force,
     };
-    let reported = write(&recording, &out, &extras)?;
+    arguments.wav.check_stdout(as_json)?;
+    let reported = write(&arguments.file, &recording, &out, &extras)?;
     if as_json {
         return print_json(&reported.json(&out));
     }
-    print(&text(&reported, &out))
+    arguments.wav.print(&text(&reported, &out))
 }
 
 /// Writes `report.html` and `summary.json` of a recording into `out`.
 pub(super) fn write(
+    file: &Path,
     recording: &Recording,
     out: &Path,
     extras: &Extras<'_>,
 ) -> Result<Reported<RecordingSummary>, Failure> {
-    let folder = results::folder_of_report(out, &recording.metadata().id)?;
-    write_into(folder, recording, out, extras)
+    // The report of another recording is not replaced.
+    let verb = format!("report {}", recording.metadata().id);
+    let inputs = [Some(file), extras.overlay.file()].into_iter().flatten();
+    let claim = extras.force.claim(&verb, inputs);
+    let protected = claim.inputs.clone();
+    let folder = results::folder(out, claim, REPORT)?;
+    write_into(folder, recording, out, extras, &protected)
 }
 
 /// The same by way of a folder that is prepared, with what it has already.
@@ -109,12 +122,15 @@ pub(super) fn write_into(
     recording: &Recording,
     out: &Path,
     extras: &Extras<'_>,
+    inputs: &Inputs,
 ) -> Result<Reported<RecordingSummary>, Failure> {
     let parameters = recording.parameters();
     let report_columns = ReportColumns::of(parameters);
     let columns = report_columns.columns();
     let measured = extras.overlay.read(&columns)?;
-    let mut listener = extras.wav.listener(&columns, TICK_S)?;
+    let mut listener = extras
+        .wav
+        .listener(&columns, TICK_S, extras.force, inputs)?;
     let expected = recording.books().totals.received;
     let setup = Setup {
         columns: &columns,
@@ -183,10 +199,10 @@ pub(super) fn write_into(
         .pictures
         .files(|paper| crepitus_report::pictures(&figures, paper))?;
     let files = report_files(page, &summary, pictures)?;
+    results::write(folder, out, files)?;
     let sound = listener
         .map(|listener| listener.finish(&text.title))
         .transpose()?;
-    results::write(folder, out, files)?;
     let differences = figures.differences();
     overlay::warn_of_nothing(&differences, extras.overlay.file());
     Ok(Reported {
@@ -329,10 +345,11 @@ mod tests {
             pictures: &line.arguments.pictures,
             overlay: &line.arguments.overlay,
             wav: &line.arguments.wav,
+            force: Force::default(),
         };
         let out = folder.path().join("out");
         let recording = Recording::open(&file, Damage::Refuse).unwrap();
-        write(&recording, &out, &extras).unwrap();
+        write(&file, &recording, &out, &extras).unwrap();
         fs::read_to_string(out.join("report.html")).unwrap()
     }
 

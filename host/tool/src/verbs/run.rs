@@ -4,19 +4,19 @@ mod plant;
 mod tables;
 mod watch;
 
-use crate::cli::{key_and_value, set_once};
-use crate::failure::{Failure, print, print_json, warn};
+use crate::cli::{Force, key_and_value, set_once};
+use crate::failure::{Failure, print_json, warn};
 use crate::interrupt;
 use crate::output::to_stderr;
 use crate::overlay::{self, Overlay};
 use crate::pictures::Pictures;
 use crate::reported::Reported;
-use crate::results::{self, Identity, footer, report_files};
+use crate::results::{self, Identity, REPORT, footer, report_files};
 use crate::sections::torque_levels;
 use crate::wav::Wav;
 use clap::Args;
+use crepitus_files::output::{Claim, Folder};
 use crepitus_report::{Setup, Text};
-use crepitus_scene::output::Folder;
 use crepitus_scene::shipped::Source;
 use crepitus_scene::{Overrides, RunError, Scene, Summary, run as runner};
 use std::path::{Path, PathBuf};
@@ -48,9 +48,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Replace another run in that folder.
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    force: Force,
 
     /// Write summary.json and events.csv alone: no trace, no report.
     #[arg(long, conflicts_with_all = ["Pictures", "Overlay", "Wav", "trace_every"])]
@@ -97,7 +96,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         Some(out) => out.clone(),
         None => results::named_after(&scene.file, "", "")?,
     };
-    let out = if arguments.force {
+    arguments.wav.check_stdout(as_json)?;
+    let out = if arguments.force.force {
         wanted.clone()
     } else {
         Identity::of(&scene).free_folder(&wanted)?
@@ -133,7 +133,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         ("report", "report.html")
     };
     let brief = format!("{}\n{}\n", summary.title, tables::in_brief(summary));
-    print(&reported.text(&brief, what, &out.join(file)))
+    let text = reported.text(&brief, what, &out.join(file));
+    arguments.wav.print(&text)
 }
 
 /// The scene that the arguments name, with their overrides.
@@ -188,9 +189,16 @@ fn simulate(
 ) -> Result<(Reported<Summary>, PathBuf), Failure> {
     let columns = runner::columns(scene);
     let measured = arguments.overlay.read(&columns)?;
-    let listener = arguments.wav.listener(&columns, scene.trace_step_s)?;
+    let claim = claim(scene, arguments);
+    let listener =
+        (arguments.wav).listener(&columns, scene.trace_step_s, arguments.force, &claim.inputs)?;
     let failed = |e: &std::io::Error| Failure::at(out, "writing the results", e);
-    let folder = results::folder_of_run(out)?;
+    let folder = if arguments.no_trace {
+        results::folder(out, claim.clone(), ["events.csv", "summary.json"])?
+    } else {
+        let names = [&REPORT[..], &["trace.csv", "events.csv"]].concat();
+        results::folder(out, claim.clone(), names)?
+    };
     interrupt::listen();
     let failed_run = |e| failure(scene, out, e);
     if arguments.no_trace {
@@ -240,10 +248,10 @@ fn simulate(
         .pictures
         .files(|paper| crepitus_report::pictures(&figures, paper))?;
     let files = report_files(page, &summary, pictures)?;
+    let out = write(scene, folder, (wanted, out), files, arguments)?;
     let sound = listener
         .map(|listener| listener.finish(&scene.title))
         .transpose()?;
-    let out = write(scene, folder, (wanted, out), files, arguments)?;
     let differences = figures.differences();
     overlay::warn_of_nothing(&differences, arguments.overlay.file());
     let reported = Reported {
@@ -252,6 +260,18 @@ fn simulate(
         sound,
     };
     Ok((reported, out))
+}
+
+/// The claim of a run on its folder.
+fn claim(scene: &Scene, arguments: &Arguments) -> Claim {
+    let overlay = arguments.overlay.file();
+    let mut inputs = results::inputs(&arguments.scene, [scene], overlay);
+    // A summary is repeated bit for bit, also in its own folder.
+    let folder = arguments.scene.parent().unwrap_or(Path::new(""));
+    if arguments.scene.ends_with("summary.json") && !Identity::of(scene).is_another_in(folder) {
+        inputs.retain(|input| *input != arguments.scene);
+    }
+    arguments.force.claim("run", inputs)
 }
 
 /// Puts the files in place. Beside those of the same run, which are still true, or with
@@ -264,13 +284,13 @@ fn write(
     arguments: &Arguments,
 ) -> Result<PathBuf, Failure> {
     let run = Identity::of(scene);
-    if !arguments.force {
+    if !arguments.force.force {
         return run.write(folder, (wanted, out), files);
     }
     let is_replaced = run.is_another_in(out);
     results::write(folder, out, files)?;
     if is_replaced && arguments.no_trace {
-        results::remove_others(out)?;
+        results::remove_others(out, claim(scene, arguments))?;
     }
     Ok(out.to_owned())
 }

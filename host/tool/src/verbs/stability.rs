@@ -9,9 +9,10 @@ mod plan;
 mod summary;
 mod table;
 
+use crate::cli::Force;
 use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
-use crate::results;
+use crate::results::{self, REPORT};
 use crate::studying::{self, Watch};
 use clap::Args;
 use crepitus_study::stability::story::{self, Stories};
@@ -71,6 +72,9 @@ pub(crate) struct Arguments {
     out: Option<PathBuf>,
 
     #[command(flatten)]
+    force: Force,
+
+    #[command(flatten)]
     pictures: Pictures,
 }
 
@@ -78,7 +82,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.coupled {
         let out = arguments.out.as_deref().unwrap_or(Path::new("out/coupled"));
-        return coupled::coupled(out, &arguments.pictures, as_json);
+        return coupled::coupled(out, arguments.force, &arguments.pictures, as_json);
     }
     let plan = plan::plan(arguments)?;
     if arguments.list {
@@ -92,7 +96,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("out/stability"));
-    let folder = results::folder(&out)?;
+    let claim = arguments.force.claim("stability", [""; 0]);
+    let folder = results::folder(&out, claim, [&REPORT[..], &["cases.csv"]].concat())?;
     let matrix = matrix::run(&plan, &mut Watch::new()).map_err(studying::failed)?;
     let summary = Summary::new(&plan, &matrix);
     let stories = stories(arguments)?;

@@ -5,7 +5,7 @@ mod merge;
 mod progress;
 mod words;
 
-use crate::cli::{key_and_value, set_once};
+use crate::cli::{Force, key_and_value, set_once};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
 use crate::results;
@@ -13,8 +13,8 @@ use clap::Args;
 use crepitus_scene::Overrides;
 use crepitus_scene::shipped::Source;
 use crepitus_sweep::{
-    Axis, Design, Format, Plan, Points, Sampled, Shard, Store, StoreError, TableError, Written,
-    run_all, totals, traced,
+    Axis, Design, Format, Opening, Plan, Points, Sampled, Shard, Store, StoreError, TableError,
+    Written, run_all, totals, traced,
 };
 use progress::{End, Progress};
 use serde_json::json;
@@ -86,16 +86,15 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 
-    /// Replace another sweep in that folder.
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    force: Force,
 
     /// parquet or csv [default: parquet in programs that are built with it].
     #[arg(long, value_name = "FORMAT", default_value = Format::DEFAULT.name(), hide_default_value = true)]
     format: Format,
 
     /// Run part I of N; `--merge` makes the table when all are done.
-    #[arg(long, value_name = "I/N", value_parser = shard)]
+    #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
 
     /// Also write the trace of each run, as traces/POINT.csv.
@@ -121,18 +120,8 @@ pub(crate) struct Arguments {
     /// Make the table of a sweep that ran in parts, here or in several folders; it goes into the
     /// first.
     #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = ["vary", "points", "latin", "sobol", "shard",
-          "estimate", "out", "traces", "set", "as_device", "force"])]
+          "estimate", "out", "traces", "set", "as_device"])]
     merge: Option<Vec<PathBuf>>,
-}
-
-/// Parses `I/N`.
-fn shard(text: &str) -> Result<Shard, String> {
-    let parts = text.split_once('/');
-    let number = |text: &str| text.trim().parse::<u64>().ok();
-    match parts.and_then(|(i, n)| Some((number(i)?, number(n)?))) {
-        Some((i, n)) => Shard::new(i, n),
-        None => Err("expected I/N, for example 3/16".to_owned()),
-    }
 }
 
 /// Parses a number of threads.
@@ -176,7 +165,7 @@ impl FromStr for Extent {
 /// Runs a sweep.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let Some(folders) = &arguments.merge {
-        return merge::run(folders, arguments.format, as_json);
+        return merge::run(folders, arguments, as_json);
     }
     let scene = arguments.scene.as_deref().unwrap_or(Path::new(""));
     let plan = plan(arguments, scene)?;
@@ -193,7 +182,15 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         Some(out) => out.clone(),
         None => results::named_after(scene, "sweep-", "")?,
     };
-    let mut store = open(&out, &plan, arguments.force)?;
+    let inputs = plan.inputs().into_iter().chain([scene.to_owned()]);
+    let claim = (arguments.force).claim("sweep", inputs.chain(arguments.points.clone()));
+    let opening = Opening {
+        shard: arguments.shard.unwrap_or(Shard::WHOLE),
+        format: arguments.format,
+        traces: arguments.traces,
+        claim,
+    };
+    let mut store = Store::create(&out, plan.identity(), &opening).map_err(store_failure)?;
     if let Some(table) = store.table() {
         return done(&plan, &table, None, as_json);
     }
@@ -264,17 +261,6 @@ fn plan(arguments: &Arguments, scene: &Path) -> Result<Plan, Failure> {
     Ok(Plan::new(source, overrides, design)?)
 }
 
-fn open(out: &Path, plan: &Plan, force: bool) -> Result<Store, Failure> {
-    let store = Store::create(out, plan.identity());
-    match store {
-        Err(StoreError::Another { .. } | StoreError::Unreadable { .. }) if force => {
-            Store::clear(out).map_err(store_failure)?;
-            Store::create(out, plan.identity()).map_err(store_failure)
-        }
-        store => store.map_err(store_failure),
-    }
-}
-
 /// Runs what has no row yet of these points; how many that were, and on how many threads.
 fn run_points(
     arguments: &Arguments,
@@ -286,7 +272,7 @@ fn run_points(
     let missing = store.missing(points).map_err(store_failure)?;
     let wanted: u64 = missing.iter().map(|range| range.end - range.start).sum();
     let traces = if arguments.traces {
-        Some(store.traces().map_err(store_failure)?)
+        Some(store.traces(&missing).map_err(store_failure)?)
     } else {
         None
     };
@@ -333,6 +319,7 @@ fn table(store: &mut Store, format: Format, out: &Path) -> Result<Written, Failu
             "interrupted: all rows are there, and the same command makes the table".to_owned(),
         ),
         TableError::Io(e) => Failure::at(out, "writing the table", &e),
+        TableError::Output(e) => e.into(),
         e => Failure::Work(format!("{}: {e}", out.display())),
     })
 }
@@ -340,8 +327,12 @@ fn table(store: &mut Store, format: Format, out: &Path) -> Result<Written, Failu
 fn store_failure(error: StoreError) -> Failure {
     match error {
         StoreError::Io { path, error } => Failure::at(&path, "the rows of a sweep", &error),
-        StoreError::Another { .. } => Failure::Input(format!(
+        StoreError::Another { .. } | StoreError::Unreadable { .. } => Failure::Input(format!(
             "{error}: name another folder with --out, or replace it with --force"
+        )),
+        StoreError::Output(error) => error.into(),
+        StoreError::Running { .. } => Failure::Input(format!(
+            "{error}: wait until it has ended, or name another folder with --out"
         )),
         error => Failure::input(error),
     }
@@ -372,12 +363,18 @@ fn done(plan: &Plan, table: &Written, ran: Option<&Ran>, as_json: bool) -> Resul
     ))
 }
 
-/// Warns of failed runs.
+/// Warns of failed runs, and of points that several programs have run.
 fn warn_of_failed(table: &Written, runs: u64) {
     if table.failed > 0 {
         warn(format!(
             "{} of {runs} runs failed: the column `failure` says why",
             table.failed
+        ));
+    }
+    if table.doubled > 0 {
+        warn(format!(
+            "{} points are in two parts each, with the same rows: each is in the table once",
+            table.doubled
         ));
     }
 }

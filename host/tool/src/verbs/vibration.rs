@@ -3,10 +3,10 @@
 
 mod table;
 
-use crate::cli::{key_and_value, set_once};
+use crate::cli::{Force, key_and_value, set_once};
 use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
-use crate::results::{self, footer, report_files};
+use crate::results::{self, REPORT, footer, report_files};
 use crate::studying::Watch;
 use clap::{Args, value_parser};
 use crepitus_scene::scene::MotionKind;
@@ -55,6 +55,9 @@ pub(crate) struct Arguments {
     set: Vec<(String, String)>,
 
     #[command(flatten)]
+    force: Force,
+
+    #[command(flatten)]
     pictures: Pictures,
 }
 
@@ -78,7 +81,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         draws: usize::try_from(arguments.draws).unwrap_or(usize::MAX),
     };
     let out = arguments.out.clone().unwrap_or_else(|| out(&plan));
-    let folder = results::folder(&out)?;
+    let inputs = results::inputs(&arguments.scene, &plan.scenes, None);
+    let folder = results::folder(&out, arguments.force.claim("vibration", inputs), REPORT)?;
     let study = study_vibration(&plan, &mut Watch::new()).map_err(failed)?;
     let html = page::html(&study, &text(&study));
     let pictures = arguments

@@ -1,7 +1,7 @@
 //! The table as a Parquet file. Every column but the index is optional: a run that
 //! failed has a reason instead of numbers.
 
-use super::{Chunk, INDEX, Table, TableError};
+use super::{Chunk, INDEX, Rows, TableError};
 use crate::parts::Kind;
 use crate::plan::Identity;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
@@ -24,7 +24,7 @@ const ZSTD: i32 = 3;
 /// Key of the metadata that says which sweep this is, as JSON.
 const KEY: &str = "crepitus_sweep";
 
-impl Table<'_> {
+impl Rows<'_> {
     pub(super) fn write_parquet(
         &self,
         file: impl Write + Send,

@@ -1,6 +1,7 @@
 //! Tables of parts that overlap, or are not complete.
 
 use super::*;
+use crate::plan::Shard;
 use crate::row::{Cell, Row};
 use crate::store::tests::identity;
 use std::fs;
@@ -32,22 +33,15 @@ fn rows(random: &mut fastrand::Rng, count: u64) -> Vec<Row> {
 #[test]
 fn what_is_missing_is_named_and_an_end_leaves_nothing() {
     let home = tempfile::tempdir().unwrap();
-    let parts = Parts::in_folder(home.path().join("parts"));
-    fs::create_dir(parts.folder()).unwrap();
+    let parts = Parts::of(home.path().to_owned(), &identity(32, ""), Shard::WHOLE);
     let rows = rows(&mut fastrand::Rng::with_seed(1), 30);
     for piece in [0..10, 11..20, 25..30] {
         parts.write(&rows[piece]).unwrap();
     }
     let attempt = |runs, goes_on| {
-        write(
-            &parts,
-            &identity(runs, ""),
-            home.path(),
-            Format::Csv,
-            &mut |_| goes_on,
-        )
-        .unwrap_err()
-        .to_string()
+        let identity = identity(runs, "");
+        let table = write(&parts, &identity, Format::Csv, &mut |_| goes_on);
+        table.unwrap_err().to_string()
     };
     let text = attempt(32, true);
     assert_eq!(
@@ -56,13 +50,72 @@ fn what_is_missing_is_named_and_an_end_leaves_nothing() {
     );
     let text = attempt(10, false);
     assert!(text.contains("interrupted"), "{text}");
-    assert!(!home.path().join("sweep.csv").exists());
+    assert_eq!(fs::read_dir(home.path()).unwrap().count(), 3);
+}
+
+#[test]
+fn a_point_in_two_parts_has_one_row_or_makes_no_table() {
+    let home = tempfile::tempdir().unwrap();
+    let parts = Parts::of(home.path().to_owned(), &identity(20, ""), Shard::WHOLE);
+    let rows = rows(&mut fastrand::Rng::with_seed(2), 20);
+    for piece in [0..12, 5..20, 7..9] {
+        parts.write(&rows[piece]).unwrap();
+    }
+    let attempt = || write(&parts, &identity(20, ""), Format::Csv, &mut |_| true);
+    assert_eq!(attempt().unwrap().doubled, 9);
+    let mut other = rows[8..14].to_vec();
+    other[3].cells[0].1 = Cell::Number(2.0);
+    parts.write(&other).unwrap();
+    let text = attempt().unwrap_err().to_string();
+    for word in [
+        "0000000000-0000000012.csv",
+        "0000000008-0000000014.csv",
+        "point 11",
+    ] {
+        assert!(text.contains(word), "{text}");
+    }
+}
+
+#[test]
+fn a_table_that_the_disk_has_not_taken_is_noticed() {
+    let table = tempfile::NamedTempFile::new().unwrap();
+    for bytes in ["a,b\n1,2\n", "a,b\n1,3\n", "a,b\n", ""] {
+        let mut hashing = Hashing::of(table.reopen().unwrap());
+        hashing.write_all(b"a,b\n1,2\n").unwrap();
+        fs::write(table.path(), bytes).unwrap();
+        let is_same = bytes == "a,b\n1,2\n";
+        let outcome = hashing.read_back(table.path());
+        let is_noticed = matches!(outcome, Err(TableError::ReadBack));
+        assert!(
+            outcome.is_ok() == is_same && is_noticed != is_same,
+            "{bytes:?}"
+        );
+    }
+}
+
+#[test]
+fn a_column_that_one_part_has_alone_is_a_difference() {
+    let home = tempfile::tempdir().unwrap();
+    let parts = Parts::of(home.path().to_owned(), &identity(2, ""), Shard::WHOLE);
+    let row = |index, names: &[&str]| Row {
+        index,
+        cells: names
+            .iter()
+            .map(|n| ((*n).to_owned(), Cell::Whole(1)))
+            .collect(),
+    };
+    parts.write(&[row(0, &["x", "y"]), row(1, &["x"])]).unwrap();
+    parts.write(&[row(0, &["x"])]).unwrap();
+    let table = write(&parts, &identity(2, ""), Format::Csv, &mut |_| true);
+    let text = table.unwrap_err().to_string();
+    assert!(text.contains("point 0"), "{text}");
 }
 
 #[cfg(feature = "parquet")]
 mod both_formats {
     use super::{identity, rows};
     use crate::parts::Parts;
+    use crate::plan::Shard;
     use crate::table::{Format, write};
     use ::parquet::file::reader::{FileReader, SerializedFileReader};
     use ::parquet::record::Field as Value;
@@ -95,18 +148,19 @@ mod both_formats {
     fn parquet_and_csv_hold_the_same_rows_in_the_same_order() {
         let mut random = fastrand::Rng::with_seed(4);
         let home = tempfile::tempdir().unwrap();
-        let parts = Parts::in_folder(home.path().join("parts"));
-        fs::create_dir(parts.folder()).unwrap();
+        let folder = home.path().join("parts");
+        fs::create_dir(&folder).unwrap();
+        let identity = identity(500, "");
+        let parts = Parts::of(folder, &identity, Shard::WHOLE);
         let rows = rows(&mut random, 500);
         // In pieces that overlap, and not in their order.
         for piece in [300..500, 0..120, 100..250, 200..310] {
             parts.write(&rows[piece]).unwrap();
         }
         for format in [Format::Csv, Format::Parquet] {
-            write(&parts, &identity(500, ""), home.path(), format, &mut |_| {
-                true
-            })
-            .unwrap();
+            let table = write(&parts, &identity, format, &mut |_| true).unwrap();
+            assert_eq!(table.doubled, 20 + 50 + 10);
+            table.file.persist(home.path().join(format.file())).unwrap();
         }
         let parquet = parquet_rows(&home.path().join("sweep.parquet"));
         let mut csv = csv::Reader::from_path(home.path().join("sweep.csv")).unwrap();

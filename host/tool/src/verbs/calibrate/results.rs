@@ -6,8 +6,8 @@ use crate::failure::Failure;
 use crate::results::{footer, json_file, svg_files, write as write_files};
 use crepitus_client::values::{full_name, show_number};
 use crepitus_connection::parameters::find;
+use crepitus_files::output::Folder;
 use crepitus_protocol::parameters::{Kind, Parameter};
-use crepitus_scene::output::Folder;
 use crepitus_table::Table;
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
@@ -15,6 +15,12 @@ use std::path::Path;
 
 /// The page.
 pub(super) const PAGE: &str = "report.html";
+
+/// The values.
+const VALUES: &str = "calibration.json";
+
+/// Names of all files.
+pub(super) const NAMES: [&str; 3] = [PAGE, VALUES, "currents.svg"];
 
 /// A parameter, and what it should be.
 #[derive(Clone, Copy, Debug)]
@@ -114,7 +120,7 @@ pub(super) fn write(
             PAGE.to_owned(),
             page::html(findings, changes, figure.as_ref(), &footer()).into(),
         ),
-        json_file("calibration.json", summary)?,
+        json_file(VALUES, summary)?,
     ];
     files.extend(svg_files(&figure));
     write_files(folder, out, files)

@@ -30,6 +30,11 @@ pub(super) struct Measured {
 }
 
 impl Recordings {
+    /// The files.
+    pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        self.from.iter().chain(&self.from_added)
+    }
+
     /// Reads them, if files are named.
     pub(super) fn read(&self, needs_second: bool) -> Result<Option<Measured>, Failure> {
         let Some(from) = &self.from else {

@@ -3,13 +3,22 @@
 use super::recorded::Measured;
 use crate::failure::Failure;
 use crate::results::{Files, summary_file, svg_files, write as write_files};
+use crepitus_files::output::Folder;
 use crepitus_identify::actuator::{Actuator, chart};
-use crepitus_scene::output::Folder;
 use serde_json::Value;
 use std::path::Path;
 
 /// The plot of impedance and residual.
 pub(super) const PLOT: &str = "impedance.svg";
+
+/// Measurements of chirps that were played.
+const MEASURED: [&str; 2] = ["measured.csv", "measured-added.csv"];
+
+/// Names of all files.
+pub(super) fn names(is_played: bool) -> Vec<&'static str> {
+    let measured: &[_] = if is_played { &MEASURED } else { &[] };
+    [&["summary.json", PLOT], measured].concat()
+}
 
 /// Writes the plot and the summary of what was found, and what a chirp that was played has
 /// shown.
@@ -25,9 +34,9 @@ pub(super) fn write(
         files.extend(svg_files([&chart::figure(actuator)]));
     }
     if let Some(measured) = measured {
-        files.push(("measured.csv".to_owned(), measured.bare.to_csv().into()));
+        files.push((MEASURED[0].to_owned(), measured.bare.to_csv().into()));
         if let Some(with_added) = &measured.with_added {
-            files.push(("measured-added.csv".to_owned(), with_added.to_csv().into()));
+            files.push((MEASURED[1].to_owned(), with_added.to_csv().into()));
         }
     }
     write_files(folder, out, files)

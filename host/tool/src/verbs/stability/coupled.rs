@@ -1,8 +1,9 @@
 //! `crepitus stability --coupled`: the Z-width of the device on a leg.
 
+use crate::cli::Force;
 use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
-use crate::results::{self, Files, footer, report_files};
+use crate::results::{self, Files, REPORT, footer, report_files};
 use crate::studying::Watch;
 use crepitus_study::coupled::{
     CoupledError, CoupledStudy, GEARS, LAGS, Margin, Setting, Verdict, most_share, run, tables,
@@ -15,6 +16,9 @@ use std::path::Path;
 
 /// Version of `summary.json`.
 const SUMMARY_VERSION: u32 = 1;
+
+/// Names of the files beside the report.
+const FILES: [&str; 4] = ["cells.csv", "onsets.csv", "margins.csv", "scene.toml"];
 
 /// The map in numbers.
 #[derive(Serialize)]
@@ -52,8 +56,14 @@ fn as_rows<S: Serializer>(joints: &[Margin], serializer: S) -> Result<S::Ok, S::
 }
 
 /// Makes the map, writes the files, says what is left to the presets.
-pub(super) fn coupled(out: &Path, pictures: &Pictures, as_json: bool) -> Result<(), Failure> {
-    let folder = results::folder(out)?;
+pub(super) fn coupled(
+    out: &Path,
+    force: Force,
+    pictures: &Pictures,
+    as_json: bool,
+) -> Result<(), Failure> {
+    let claim = force.claim("stability --coupled", [""; 0]);
+    let folder = results::folder(out, claim, [&REPORT[..], &FILES].concat())?;
     let study = run(&mut Watch::new()).map_err(|error| match error {
         CoupledError::Cancelled(_) => Failure::interrupted(),
         CoupledError::Run(why) => Failure::Work(format!("the study failed: {why}")),
@@ -150,21 +160,14 @@ fn files(study: &CoupledStudy, summary: &Summary, pictures: &Pictures) -> Result
     let pictures = pictures.files(|_| coupled::pictures(study))?;
     let mut files = report_files(page, summary, pictures)?;
     let margins = [study.presets.as_slice(), &study.extras].concat();
-    files.extend([
-        (
-            "cells.csv".to_owned(),
-            tables::cells(&study.cells).to_csv().into(),
-        ),
-        (
-            "onsets.csv".to_owned(),
-            tables::onsets(&study.onsets).to_csv().into(),
-        ),
-        (
-            "margins.csv".to_owned(),
-            tables::margins(&margins).to_csv().into(),
-        ),
-        ("scene.toml".to_owned(), Setting::shipped().toml().into()),
-    ]);
+    let contents = [
+        tables::cells(&study.cells).to_csv(),
+        tables::onsets(&study.onsets).to_csv(),
+        tables::margins(&margins).to_csv(),
+        Setting::shipped().toml(),
+    ];
+    let named = FILES.iter().zip(contents);
+    files.extend(named.map(|(name, content)| ((*name).to_owned(), content.into())));
     Ok(files)
 }
 

@@ -4,7 +4,7 @@ use super::{no_thread, words};
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crate::progress;
-use crepitus_sweep::{Ended, Format, Parts, Plan, Receiver, Row, run_all, table, totals};
+use crepitus_sweep::{Ended, Format, Parts, Plan, Receiver, Row, Shard, run_all, table, totals};
 use serde_json::json;
 use std::io;
 use std::iter::once;
@@ -84,13 +84,11 @@ fn bytes_of_table(plan: &Plan, rows: Rows) -> Result<u64, Failure> {
     for (index, row) in (0..).zip(&mut rows) {
         row.index = index;
     }
-    let parts = Parts::in_folder(home.path().to_owned());
-    parts.write(&rows).map_err(failed)?;
     let mut identity = plan.identity().clone();
     identity.runs = rows.len() as u64;
-    let written = table::write(&parts, &identity, home.path(), Format::DEFAULT, &mut |_| {
-        true
-    });
+    let parts = Parts::of(home.path().to_owned(), &identity, Shard::WHOLE);
+    parts.write(&rows).map_err(failed)?;
+    let written = table::write(&parts, &identity, Format::DEFAULT, &mut |_| true);
     match written {
         Ok(written) => Ok(written.bytes),
         Err(e) => Err(Failure::Work(e.to_string())),

@@ -1,19 +1,25 @@
 //! `crepitus sweep --merge DIR…`: the table of a sweep that ran in parts.
 
-use super::{store_failure, table, warn_of_failed, words};
+use super::{Arguments, store_failure, table, warn_of_failed, words};
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
-use crepitus_sweep::{Format, Store};
+use crepitus_sweep::Store;
 use serde_json::json;
 use std::path::PathBuf;
 
-pub(super) fn run(folders: &[PathBuf], format: Format, as_json: bool) -> Result<(), Failure> {
+pub(super) fn run(
+    folders: &[PathBuf],
+    arguments: &Arguments,
+    as_json: bool,
+) -> Result<(), Failure> {
     interrupt::listen();
     let Some((first, others)) = folders.split_first() else {
         return Err(Failure::Input("--merge: name a folder".to_owned()));
     };
-    let mut store = Store::open(first).map_err(store_failure)?;
-    let others = others.iter().map(|other| Store::open(other));
+    let claim = arguments.force.claim("sweep", [""; 0]);
+    let format = arguments.format;
+    let mut store = Store::open(first, format, claim).map_err(store_failure)?;
+    let others = others.iter().map(|other| Store::read(other));
     let others = others
         .collect::<Result<Vec<_>, _>>()
         .map_err(store_failure)?;
