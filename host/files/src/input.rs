@@ -14,11 +14,12 @@ use std::io::{self, Read};
 use std::path::Path;
 use std::str::Utf8Error;
 
-/// Longest text that people write: a scene, a preset, a lesson, bytes.
-pub const TEXT_BYTES: u64 = 16_000_000;
+/// Longest text of settings, bytes: a scene, a preset, a lesson. Parsed, a text takes a hundred times
+/// its length.
+pub const TEXT_BYTES: u64 = 2_000_000;
 
-/// Longest table of numbers, bytes: an hour of motion at 1 kHz with all columns of an OpenSim file.
-pub const TABLE_BYTES: u64 = 256 << 20;
+/// Longest table of points or of a chirp, bytes.
+pub const TABLE_BYTES: u64 = 64_000_000;
 
 /// Error of a file that cannot be read. The path is the caller's to name.
 #[derive(Debug, thiserror::Error)]

@@ -11,8 +11,8 @@ use tempfile::NamedTempFile;
 pub(crate) fn in_folder(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".crepitus-");
-    // The usual permissions, not those of a temporary file.
+    // For their owner alone: they hold what students have answered.
     #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o600));
     builder.tempfile_in(folder)
 }

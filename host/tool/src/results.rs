@@ -2,13 +2,14 @@
 
 use crate::failure::{Failure, warn};
 use crate::recorded::beside;
+use crepitus_files::input;
 use crepitus_plot::{Figure, pictures};
 use crepitus_scene::Scene;
 use crepitus_scene::output::Folder;
 use serde::Serialize;
 use serde_json::Value;
 use std::ffi::{OsStr, OsString};
-use std::fs::{self, File};
+use std::fs;
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -84,18 +85,18 @@ fn refuse_recordings<'n>(
 }
 
 fn is_recording(file: &Path) -> bool {
-    // Opening a pipe would wait for its writer.
-    if !file.is_file() {
-        return false;
-    }
     let mut head = Vec::new();
-    let read = File::open(file).and_then(|file| file.take(32).read_to_end(&mut head));
+    let read = input::open(file).and_then(|file| Ok(file.take(32).read_to_end(&mut head)?));
     read.is_ok() && RECORDING_HEADS.iter().any(|begin| head.starts_with(begin))
 }
 
+/// Longest summary that is read, bytes.
+const SUMMARY_BYTES: u64 = 64_000_000;
+
 /// The summary that a folder has; null if there is none.
 fn summary_in(folder: &Path) -> Value {
-    let text = fs::read_to_string(folder.join("summary.json")).unwrap_or_default();
+    let text =
+        input::read_to_string(&folder.join("summary.json"), SUMMARY_BYTES).unwrap_or_default();
     serde_json::from_str(&text).unwrap_or_default()
 }
 

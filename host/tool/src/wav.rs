@@ -2,10 +2,10 @@
 
 use crate::failure::{Failure, warn};
 use clap::{Args, ValueEnum};
+use crepitus_files::input;
 use crepitus_recording::new_file;
 use crepitus_scene::trace::Column;
 use crepitus_sound::{Sound, SoundError, SoundSummary};
-use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -109,7 +109,7 @@ impl Wav {
 /// Returns whether there is something in the file, and no sound.
 fn is_of_another_kind(file: &Path) -> bool {
     let mut head = Vec::new();
-    let read = File::open(file).and_then(|file| file.take(4).read_to_end(&mut head));
+    let read = input::open(file).and_then(|file| Ok(file.take(4).read_to_end(&mut head)?));
     read.is_ok() && !head.is_empty() && head != *b"RIFF"
 }
 

@@ -6,6 +6,7 @@
 //! columns of a sweep do not vary, and a table is written column by column.
 
 use crate::row::Row;
+use crepitus_files::input;
 use std::collections::HashMap;
 use std::fs;
 use std::io::{self, Write};
@@ -232,8 +233,7 @@ impl Parts {
         let mut reader = csv::ReaderBuilder::new()
             .flexible(true)
             .has_headers(false)
-            .from_path(&file)
-            .map_err(|e| refuse(e.to_string()))?;
+            .from_reader(input::open(&file).map_err(|e| refuse(e.to_string()))?);
         let mut columns = Vec::new();
         for record in reader.records() {
             let record = record.map_err(|e| refuse(e.to_string()))?;
@@ -267,7 +267,10 @@ impl Parts {
     pub fn copy_from(&self, other: &Self) -> io::Result<()> {
         for points in other.points()? {
             let mut copy = scratch_file(&self.folder)?;
-            io::copy(&mut fs::File::open(other.file(&points))?, &mut copy)?;
+            io::copy(
+                &mut input::open(&other.file(&points)).map_err(io::Error::from)?,
+                &mut copy,
+            )?;
             copy.as_file().sync_data()?;
             copy.persist(self.file(&points))?;
         }

@@ -5,6 +5,7 @@ use crate::plan::Identity;
 use crate::row::Row;
 use crate::table::{self, Format, TableError, Written};
 use crate::traced::Traces;
+use crepitus_files::input;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
@@ -133,7 +134,8 @@ impl Store {
     /// [`StoreError`].
     pub fn open(folder: &Path) -> Result<Self, StoreError> {
         let file = folder.join(ABOUT);
-        let text = match fs::read_to_string(&file) {
+        let read = input::read_to_string(&file, input::TEXT_BYTES).map_err(io::Error::from);
+        let text = match read {
             Err(e) if e.kind() == io::ErrorKind::NotFound => {
                 return Err(StoreError::None(folder.to_owned()));
             }

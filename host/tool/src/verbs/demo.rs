@@ -19,7 +19,7 @@ use crepitus_connection::Simulated;
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};
-use crepitus_recording::{Damage, Recording, RecordingSummary};
+use crepitus_recording::{Damage, EndCause, Ending, Recording, RecordingSummary};
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, preset};
 use serde_json::json;
@@ -116,7 +116,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let Examination {
         recording, made, ..
     } = examination;
-    recording.finish()?;
+    recording.finish(Ending::of(EndCause::Time))?;
     narration.step("examination", &examination_text(&client, &made))?;
 
     let recording = Recording::open(&file, Damage::Refuse).map_err(Failure::input)?;
