@@ -78,6 +78,42 @@ fn a_recording_whose_last_samples_a_hanging_program_has_is_not_complete() {
     assert!(!recording(&path).is_complete());
 }
 
+/// As when the computer sleeps from half a second on, to the end of the time and longer.
+#[test]
+fn a_recording_whose_end_was_slept_through_counts_what_is_missing() {
+    let served = Served::new();
+    let path = file(&served, "a");
+    let arguments = ["record", path.to_str().unwrap(), "--for", "2s"];
+    let mut recorder = start(&served, &arguments, Stdio::null());
+    until_half_a_second_is_in(&path);
+    signal(&recorder, "-STOP");
+    sleep(Duration::from_secs(3));
+    signal(&recorder, "-CONT");
+    let status = ended(&mut recorder);
+    let text = said(&mut recorder);
+    assert_eq!(status.code(), Some(1), "{text}");
+    assert!(
+        text.contains("missing at the end of the recording"),
+        "{text}"
+    );
+    let recording = recording(&path);
+    let totals = recording.books().totals;
+    assert!(totals.produced > 55_000, "{totals:?}");
+    assert!(totals.dropped > 30_000, "{totals:?}");
+    let warnings = recording.warnings().join("\n");
+    assert!(warnings.contains("samples"), "{warnings}");
+    let out = file(&served, "out");
+    let report = served.run(&[
+        "report",
+        path.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert!(report.status.success(), "{}", stderr(&report));
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("are missing"));
+}
+
 /// Stalled reader, as a pager whose user has gone, or a terminal that was stopped by Ctrl-S.
 #[test]
 fn a_program_that_nobody_reads_obeys_signals() {

@@ -1,6 +1,9 @@
 //! Careless and hostile input: escapes, endless words, places
 //! without write permission, values out of range.
 
+#[cfg(target_os = "linux")]
+#[path = "input/bad_files.rs"]
+mod bad_files;
 mod support;
 
 use std::process::Output;

@@ -540,6 +540,63 @@ fn a_recording_is_shown_in_full_detail() {
     );
 }
 
+/// A file with right checksums whose last block says that it came centuries later; one in a folder of
+/// sessions that nobody writes to; and the page is still served.
+#[cfg(target_os = "linux")]
+#[test]
+fn no_recording_ends_the_panel() {
+    use crepitus_protocol::management::Identity;
+    use crepitus_protocol::telemetry::{Block, BlockFlags};
+    use crepitus_recording::{Begin, Metadata, Recorder};
+    let home = tempfile::tempdir().unwrap();
+    let file = home.path().join("centuries.crepitus");
+    let metadata = Metadata::new("a gap", &Identity::default(), None);
+    let mut recorder = Recorder::create(&file, &metadata).unwrap();
+    let begin = Begin {
+        start: 1,
+        ..Begin::default()
+    };
+    recorder.subscribed(begin).unwrap();
+    for first_tick in (0..1_000).map(|n| 20 * n).chain([1 << 47]) {
+        let flags = BlockFlags::new(crepitus_protocol::State::Armed, true, 1);
+        let block = Block {
+            first_tick,
+            flags,
+            ..Block::default()
+        };
+        recorder.block(&block).unwrap();
+    }
+    recorder.finish().unwrap();
+    let pipe = home.path().join("pipe.crepitus");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    let panel = Panel::new(&[
+        "--device",
+        "sim",
+        "--sessions",
+        home.path().to_str().unwrap(),
+    ]);
+    let mut page = panel.controlling();
+    let files = page.ask("recordings", json!({})).unwrap();
+    let id = |name: &str| {
+        let mut files = files["files"].as_array().unwrap().iter();
+        files.find(|file| file["name"] == name).unwrap()["id"].clone()
+    };
+    let centuries = id("centuries.crepitus");
+    let facts = page.ask("open", json!({ "recording": centuries })).unwrap();
+    assert_eq!(facts["rows"], 20_020);
+    let end_s = facts["end_s"].as_f64().unwrap();
+    assert!(end_s > 7e9, "{facts}");
+    let id_of_gap = centuries.as_u64().unwrap();
+    assert!((1..=500).contains(&page.trace(id_of_gap, 0.0, end_s, 500).bins));
+    let before = page.trace(id_of_gap, 0.0, 1.0, 500);
+    assert!((400..=500).contains(&before.bins), "{}", before.bins);
+    let error = page.ask("open", json!({ "recording": id("pipe.crepitus") }));
+    assert!(error.unwrap_err().contains("a pipe"));
+    page.ask("recordings", json!({})).unwrap();
+    assert!(panel.end().success());
+}
+
 #[test]
 fn it_joins_a_device_that_another_program_has_armed() {
     let served = Served::new();
@@ -663,10 +720,7 @@ fn what_cannot_start_says_why() {
             vec!["panel", "--device", "sim", "--port", port],
             "choose another one with --port",
         ),
-        (
-            vec!["panel", "--replay", "no-such-file"],
-            "there is no such recording",
-        ),
+        (vec!["panel", "--replay", "no-such-file"], "cannot be read"),
         (vec!["panel", "--device", "nobody"], "unknown device"),
         (vec!["panel", "--replay", "Cargo.toml"], "not a recording"),
         (

@@ -88,6 +88,48 @@ fn any_name_works_and_the_hint_can_be_pasted() {
     }
 }
 
+/// The device stops when the leg leaves the range of motion.
+#[test]
+fn a_recording_that_a_fault_has_ended_names_it() {
+    let home = tempfile::tempdir().unwrap();
+    let file = home.path().join("a");
+    let device = ["--device", "sim", "--scene", "high-speed"];
+    let record = [
+        &["record", text(&file), "--arm", "--zero", "--for", "20s"][..],
+        &device,
+    ]
+    .concat();
+    let output = run(&record);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("outside-range"),
+        "{}",
+        stderr(&output)
+    );
+    let out = home.path().join("out");
+    let report = run(&["report", text(&file), "--out", text(&out), "--json"]);
+    let report: Value = serde_json::from_str(&stdout(&report)).unwrap();
+    let summary = support::summary(&out);
+    for summary in [&report["summary"], &summary] {
+        let summary = if summary.is_null() { &report } else { summary };
+        assert_eq!(summary["ending"]["cause"], "fault", "{summary}");
+        let fault = summary["ending"]["faults"][0].as_str().unwrap();
+        assert!(fault.starts_with("outside-range"), "{fault}");
+        let warnings = summary["warnings"].to_string();
+        assert!(warnings.contains("ended early") && warnings.contains("outside-range"));
+    }
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("ended early") && page.contains("outside-range"));
+    // One that ends in its time says nothing.
+    let whole = recorded(home.path(), "b");
+    let opened = recording(&whole);
+    assert_eq!(opened.warnings(), [""; 0]);
+    assert_eq!(
+        opened.ending().unwrap().cause,
+        crepitus_recording::EndCause::Time
+    );
+}
+
 #[test]
 fn a_report_replaces_nothing_but_its_own() {
     let home = tempfile::tempdir().unwrap();

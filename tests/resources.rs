@@ -4,21 +4,34 @@
 
 mod support;
 
+use crepitus_protocol::management::Identity;
+use crepitus_protocol::telemetry::{Block, BlockFlags};
+use crepitus_protocol::{State, Values};
+use crepitus_recording::{Begin, Metadata, Recorder};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 use support::{crepitus, names, stderr};
 
 /// Highest resident memory of a run of so many simulated seconds, kB.
-fn peak_kb(seconds: u32) -> u64 {
+fn peak_of_run_kb(seconds: u32) -> u64 {
     let home = tempfile::tempdir().unwrap();
+    let duration = format!("duration_s={seconds}");
+    let out = home.path().join("out");
+    peak_kb(&[
+        "run",
+        "slow-examination",
+        "--set",
+        &duration,
+        "--out",
+        out.to_str().unwrap(),
+    ])
+}
+
+/// Highest resident memory of a command that succeeds, kB.
+fn peak_kb(arguments: &[&str]) -> u64 {
     let mut child = crepitus()
-        .args([
-            "run",
-            "slow-examination",
-            "--set",
-            &format!("duration_s={seconds}"),
-        ])
-        .args(["--out", home.path().join("out").to_str().unwrap()])
+        .args(arguments)
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
@@ -39,10 +52,76 @@ fn peak_kb(seconds: u32) -> u64 {
 
 #[test]
 fn memory_does_not_grow_with_the_duration() {
-    let (short, long) = (peak_kb(5), peak_kb(60));
+    let (short, long) = (peak_of_run_kb(5), peak_of_run_kb(60));
     println!("peak memory: {short} kB for 100 thousand rows, {long} kB for 1.2 million");
     assert!(long < short + 8_000, "{short} kB, then {long} kB");
     assert!(long < 100_000, "{long} kB");
+}
+
+/// A recording with right checksums: half a second before a gap of so many ticks, and half a second
+/// after it, `times` times.
+fn with_gaps(file: &Path, gap: u64, times: u64) {
+    let metadata = Metadata::new("a gap", &Identity::default(), None);
+    let mut recorder = Recorder::create(file, &metadata).unwrap();
+    recorder
+        .subscribed(Begin {
+            start: 1,
+            ..Begin::default()
+        })
+        .unwrap();
+    recorder.announce(Block::default().revision, &Values::default());
+    let mut tick = 0;
+    for _ in 0..=times {
+        for _ in 0..500 {
+            let block = Block {
+                first_tick: tick,
+                flags: BlockFlags::new(State::Armed, true, 1),
+                ..Block::default()
+            };
+            recorder.block(&block).unwrap();
+            tick += 20;
+        }
+        tick += gap;
+    }
+    recorder.finish().unwrap();
+}
+
+/// Sizes follow the samples of a file, not the times that it says they have.
+#[test]
+fn a_gap_in_time_takes_no_memory() {
+    const DAY: u64 = 86_400 * 20_000;
+    let home = tempfile::tempdir().unwrap();
+    let at = |name: &str| home.path().join(name).display().to_string();
+    for (name, gap, times) in [("none", 0, 8), ("days", DAY, 8), ("centuries", 1 << 47, 1)] {
+        let file = at(name);
+        with_gaps(Path::new(&file), gap, times);
+        let out = |form: &str| at(&format!("{name}.{form}"));
+        let parquet = out("parquet");
+        for arguments in [
+            vec!["report", &file, "--out", &out("report")],
+            vec![
+                "report",
+                &file,
+                "--out",
+                &out("wav"),
+                "--wav",
+                &out("wav.wav"),
+            ],
+            vec!["export", &file, "--format", "csv", "--out", &out("csv")],
+            vec!["export", &file, "--format", "mcap", "--out", &out("mcap")],
+            vec!["export", &file, "--format", "parquet", "--out", &parquet],
+            vec!["report", &parquet, "--out", &out("second")],
+        ] {
+            let peak = peak_kb(&arguments);
+            assert!(peak < 150_000, "{arguments:?}: {peak} kB");
+        }
+        // The estimator refuses it, and has not looked for room either.
+        let output = crepitus()
+            .args(["identify", &file, "--weight-kg", "1", "--lever-m", "0.2"])
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{name}: {}", stderr(&output));
+    }
 }
 
 #[test]

@@ -201,6 +201,9 @@ fn is_listed(path: &str) -> bool {
 fn why(path: &str, error: &serialport::Error) -> TransportError {
     let port = path.to_owned();
     match error.kind() {
+        ErrorKind::Io(io::ErrorKind::PermissionDenied) if holder::is_pseudo_terminal(path) => {
+            TransportError::OthersTerminal { port }
+        }
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => TransportError::Denied {
             port,
             group: holder::group_of(path).unwrap_or_else(|| "dialout".to_owned()),

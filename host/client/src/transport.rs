@@ -95,6 +95,15 @@ pub enum TransportError {
         /// The group whose members have permission.
         group: String,
     },
+    /// A simulated device that another user serves.
+    #[error(
+        "cannot open {port}: permission denied; a program of another user serves it, and no group gives access: \
+         let that user run this command, or serve a device of your own with `crepitus serve-sim`"
+    )]
+    OthersTerminal {
+        /// The port.
+        port: String,
+    },
     /// Not a serial port.
     #[error("cannot open {port}: it is no serial port; `crepitus devices` lists those of devices")]
     NotSerial {

@@ -17,6 +17,7 @@
 use crate::finding::Finding;
 use crate::report::{Text, report};
 use crate::session::{Session, SessionError};
+use crepitus_files::input::{self, InputError};
 use crepitus_files::output::{Claim, Hashed, OutputError, OwnedFolder, temporary_in};
 use crepitus_scene::preset::Level;
 use std::fs;
@@ -50,7 +51,7 @@ pub enum FolderError {
         /// File.
         path: PathBuf,
         /// Cause.
-        cause: io::Error,
+        cause: InputError,
     },
     /// The session cannot be rebuilt.
     #[error("{}: {cause}", .path.display())]
@@ -174,13 +175,16 @@ impl Session {
     /// [`FolderError::Read`], [`FolderError::Session`].
     pub fn read(folder: &Path) -> Result<Self, FolderError> {
         let path = folder.join(SESSION);
-        let text = match fs::read_to_string(&path) {
+        let text = match input::read_to_string(&path, SESSION_BYTES) {
             Ok(text) => text,
             Err(cause) => return Err(FolderError::Read { path, cause }),
         };
         Self::from_json(&text).map_err(|cause| FolderError::Session { path, cause })
     }
 }
+
+/// Longest session that is read, bytes: a lesson of a day with a thousand answers is a tenth of it.
+const SESSION_BYTES: u64 = 16_000_000;
 
 const SESSION: &str = "session.json";
 const ANSWERS: &str = "answers.csv";

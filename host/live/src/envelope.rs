@@ -145,55 +145,42 @@ impl Bin {
     }
 }
 
-/// Makes bins of rows. Bin `k` has the samples of the times from `k` lengths of a bin to
-/// `k + 1`.
+/// Makes numbered bins of rows, and none where there are no rows. Bin `k` has the samples of the
+/// times from `k` lengths of a bin to `k + 1`.
 #[derive(Clone, Debug)]
-pub struct Envelope {
+pub struct Bins {
     rows_per_bin: u64,
-    /// Number of the bin at hand, and its samples so far.
-    number: u64,
-    bin: Bin,
-    has_rows: bool,
-    /// Complete bins, of which the last is the one before `number`.
-    ready: VecDeque<Bin>,
+    /// The bin at hand and its number; none before the first row.
+    open: Option<(u64, Bin)>,
     /// The states of the last phases: they are mostly the same.
     last: (Phases, u32),
 }
 
-/// Gaps of more bins are cut: a view shows ten seconds or a minute.
-const MOST_GAPS: u64 = 20_000;
-
-impl Envelope {
-    /// Returns an empty envelope with bins of `rows_per_bin` samples, at least 1.
+impl Bins {
+    /// Returns a maker of bins of `rows_per_bin` samples, at least 1.
     pub fn new(rows_per_bin: u32) -> Self {
         Self {
             rows_per_bin: u64::from(rows_per_bin.max(1)),
-            number: 0,
-            bin: Bin::EMPTY,
-            has_rows: false,
-            ready: VecDeque::new(),
+            open: None,
             last: (Phases::default(), 0),
         }
     }
 
-    /// Length of a bin, s.
-    pub fn bin_s(&self) -> f64 {
-        crepitus_recording::seconds(self.rows_per_bin)
-    }
-
-    /// Takes the next sample. Times grow; one that does not belongs to the bin at hand.
-    pub fn take(&mut self, row: &Row) {
+    /// Takes the next sample, and returns the bin that it completes. Times grow; a sample whose time
+    /// does not belongs to the bin at hand.
+    pub fn take(&mut self, row: &Row) -> Option<(u64, Bin)> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "times are at least 0, and saturate"
         )]
         let tick = (row.time_s * f64::from(TICKS_PER_S)).round() as u64;
-        self.go_to(tick / self.rows_per_bin);
+        let number = tick / self.rows_per_bin;
+        let complete = self.open.take_if(|(open, _)| *open < number);
+        let (_, bin) = self.open.get_or_insert((number, Bin::EMPTY));
         if self.last.0 != row.phases {
             self.last = (row.phases, mask(row.phases));
         }
-        let bin = &mut self.bin;
         bin.torque_nm.take(row.torque_nm);
         bin.model_nm.take(row.model_torque_nm);
         bin.speed_rad_s.take(row.omega_rad_s);
@@ -203,39 +190,76 @@ impl Envelope {
         let broke = row.flags.has(SampleFlags::BREAK);
         bin.breaks = bin.breaks.saturating_add(u16::from(broke));
         bin.marks.0 |= Marks::of(row.flags);
-        self.has_rows = true;
+        complete
     }
 
-    /// Completes the bins before this one.
-    fn go_to(&mut self, number: u64) {
-        if number <= self.number && (self.has_rows || !self.ready.is_empty()) {
-            return;
+    /// Returns the last bin, which may have fewer samples.
+    pub fn finish(self) -> Option<(u64, Bin)> {
+        self.open
+    }
+}
+
+/// The latest bins of a live view, with empty ones where there are no samples.
+#[derive(Clone, Debug)]
+pub struct Envelope {
+    bins: Bins,
+    /// Number of the bin after the last complete one.
+    next: u64,
+    /// Complete bins, of which the last is the one before `next`.
+    ready: VecDeque<Bin>,
+}
+
+/// Gaps of more bins are cut: a view shows ten seconds or a minute.
+const MOST_GAPS: u64 = 20_000;
+
+impl Envelope {
+    /// Returns an empty envelope with bins of `rows_per_bin` samples, at least 1.
+    pub fn new(rows_per_bin: u32) -> Self {
+        Self {
+            bins: Bins::new(rows_per_bin),
+            next: 0,
+            ready: VecDeque::new(),
         }
-        if self.has_rows {
-            self.ready.push_back(self.bin);
-            let gaps = (number - self.number - 1).min(MOST_GAPS);
-            if gaps < number - self.number - 1 {
-                // What is before a cut gap cannot stand beside it.
+    }
+
+    /// Length of a bin, s.
+    pub fn bin_s(&self) -> f64 {
+        crepitus_recording::seconds(self.bins.rows_per_bin)
+    }
+
+    /// Takes the next sample. Times grow; one that does not belongs to the bin at hand.
+    pub fn take(&mut self, row: &Row) {
+        let is_first = self.bins.open.is_none();
+        let complete = self.bins.take(row);
+        let open = self.bins.open.map_or(0, |(number, _)| number);
+        if let Some((_, bin)) = complete {
+            self.ready.push_back(bin);
+            self.next += 1;
+            // What is before a cut gap cannot stand beside it.
+            let gaps = open - self.next;
+            if gaps > MOST_GAPS {
                 self.ready.clear();
             }
+            let gaps = gaps.min(MOST_GAPS);
             self.ready.extend((0..gaps).map(|_| Bin::GAP));
+            self.next = open;
+        } else if is_first {
+            self.next = open;
         }
-        self.number = number;
-        self.bin = Bin::EMPTY;
-        self.has_rows = false;
     }
 
     /// Number of the first complete bin, and all of them, oldest first; they are removed.
     pub fn complete(&mut self) -> (u64, Vec<Bin>) {
         let count = u64::try_from(self.ready.len()).unwrap_or(0);
-        let first = self.number.saturating_sub(count);
+        let first = self.next.saturating_sub(count);
         (first, self.ready.drain(..).collect())
     }
 
     /// The same with the last bin, which may have fewer samples.
     pub fn finish(mut self) -> (u64, Vec<Bin>) {
-        if self.has_rows {
-            self.go_to(self.number + 1);
+        if let Some((number, bin)) = self.bins.open {
+            self.ready.push_back(bin);
+            self.next = number + 1;
         }
         self.complete()
     }

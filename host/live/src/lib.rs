@@ -25,7 +25,7 @@ mod states;
 mod strokes;
 mod target;
 
-pub use envelope::{Bin, Envelope, Marks, Span};
+pub use envelope::{Bin, Bins, Envelope, Marks, Span};
 pub use pace::{Pace, Score, Verdict};
 pub use states::{STATES, StateName, mask};
 pub use target::{Aim, NAMED, Target, TargetError};

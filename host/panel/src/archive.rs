@@ -1,6 +1,6 @@
 //! Recordings, for looking at: a thread of its own, so that reading one delays nothing.
 //!
-//! Of an open recording it keeps bins of a millisecond, 40 bytes each. A trace of a longer
+//! Of an open recording it keeps bins of each millisecond with samples, 56 bytes each. A trace of a longer
 //! time is joined from these; of a shorter one the samples themselves are read again.
 
 mod opened;

@@ -233,6 +233,7 @@ impl<'p, T: Transport> Keeper<'p, T> {
         } else {
             self.pump();
         }
+        self.check_files();
         if self.hides != self.is_hidden() {
             self.hides = !self.hides;
             self.publish_parameters();

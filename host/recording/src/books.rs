@@ -14,6 +14,7 @@ mod recount;
 #[cfg(feature = "parquet")]
 mod row_count;
 
+use crate::ending::Ending;
 use crepitus_protocol::telemetry::Block;
 pub(crate) use recount::Recount;
 #[cfg(feature = "parquet")]
@@ -95,6 +96,20 @@ pub struct Totals {
 }
 
 impl Totals {
+    /// Returns the sums as text.
+    pub(crate) fn text(&self) -> String {
+        format!(
+            "{} produced, {} received, {} missing ({} dropped by the device, {} not recorded while the \
+             connection was lost, {} damaged)",
+            self.produced,
+            self.received,
+            self.dropped,
+            self.by_device,
+            self.not_connected,
+            self.damaged
+        )
+    }
+
     /// Missing samples that were lost between the device and the file.
     pub fn on_the_way(&self) -> u64 {
         self.dropped
@@ -149,8 +164,9 @@ impl Books {
                 cause,
             });
         }
-        self.totals.produced += samples;
-        self.totals.dropped += samples;
+        // Numbers of a file may be any.
+        self.totals.produced = self.totals.produced.saturating_add(samples);
+        self.totals.dropped = self.totals.dropped.saturating_add(samples);
     }
 
     /// Records that so many samples before the first one are damaged.
@@ -293,6 +309,15 @@ impl Ledger {
         self.said = block.dropped;
         self.is_damaged = false;
         true
+    }
+
+    /// The recording has ended: samples up to that of the drive are missing.
+    pub(crate) fn ended(&mut self, ending: &Ending) {
+        let end = ending.produced_to_tick.unwrap_or(0);
+        let missing = end.saturating_sub(self.next_tick);
+        self.books.gap(self.next_tick, missing, Cause::OnTheWay);
+        self.books.missing_at_end = missing;
+        self.next_tick += missing;
     }
 
     /// True if this start of the drive is over. Their numbers have five bits.

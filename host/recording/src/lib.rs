@@ -22,6 +22,7 @@
 mod analysis;
 mod arming;
 mod books;
+mod ending;
 mod findings;
 mod log;
 #[cfg(feature = "mcap")]
@@ -39,6 +40,7 @@ mod shaft;
 pub use analysis::{Analysis, Derived, Object, RecordingSummary};
 pub use arming::ArmingPushes;
 pub use books::{Begin, Books, Cause, Gap, Segment, Totals};
+pub use ending::{EndCause, Ending};
 pub use findings::Findings;
 pub use log::disk::{Background, Disk};
 pub use log::recorder::{RecordError, Recorder};

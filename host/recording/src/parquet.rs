@@ -21,6 +21,7 @@ mod words;
 mod writer;
 
 use crate::books::Books;
+use crate::ending::Ending;
 use crate::metadata::Metadata;
 use crate::parameters::History;
 use parquet::errors::ParquetError;
@@ -49,6 +50,8 @@ pub(crate) struct About {
     #[serde(flatten)]
     pub(crate) metadata: Metadata,
     pub(crate) is_complete: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) ending: Option<Ending>,
     pub(crate) parameters: History,
     pub(crate) books: Books,
     /// Damage of the file that it was made of, in sentences.

@@ -1,6 +1,7 @@
 //! Reading of a recording, in whichever format it is.
 
 use crate::books::Books;
+use crate::ending::Ending;
 use crate::findings::Findings;
 use crate::log::MAGIC;
 use crate::log::frame::Content;
@@ -11,6 +12,7 @@ use crate::parameters::{History, InForce};
 use crate::parquet;
 use crate::row::Row;
 use crate::samples::Samples;
+use crepitus_files::input;
 use crepitus_protocol::TICK_S;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -89,6 +91,7 @@ pub struct Recording {
     books: Books,
     history: History,
     is_complete: bool,
+    ending: Option<Ending>,
     cut_bytes: u64,
     findings: Findings,
     /// Damage of the file that this one was made of, in sentences.
@@ -140,7 +143,7 @@ impl Recording {
     }
 
     fn log(path: &Path, damage: Damage) -> io::Result<Self> {
-        let file = File::open(path)?;
+        let file = input::open(path)?;
         let scanned = reader::scan(&file, damage)?;
         Ok(Self {
             path: path.to_owned(),
@@ -148,6 +151,7 @@ impl Recording {
             books: scanned.ledger.into_books(),
             history: scanned.history,
             is_complete: scanned.is_complete,
+            ending: scanned.ending,
             cut_bytes: scanned.cut_bytes,
             findings: scanned.findings,
             earlier_damage: Vec::new(),
@@ -164,6 +168,7 @@ impl Recording {
             books: read.books,
             history: read.parameters,
             is_complete: read.is_complete,
+            ending: read.ending,
             cut_bytes: 0,
             findings,
             earlier_damage: read.damage,
@@ -191,9 +196,20 @@ impl Recording {
         &self.history
     }
 
-    /// True if it was ended in order, not cut off.
+    /// True if it was ended in order, not cut off, and nothing is missing at its end.
     pub fn is_complete(&self) -> bool {
+        self.is_complete && self.books.missing_at_end == 0
+    }
+
+    /// True if its program has written its end.
+    #[cfg(feature = "parquet")]
+    pub(crate) fn is_ended(&self) -> bool {
         self.is_complete
+    }
+
+    /// The end that its program has noted.
+    pub fn ending(&self) -> Option<&Ending> {
+        self.ending.as_ref()
     }
 
     /// The format of the file.
@@ -220,7 +236,9 @@ impl Recording {
                  or could not write.{cut}"
             ));
         }
+        warnings.extend(self.ending.as_ref().and_then(Ending::warning));
         warnings.extend(self.missing());
+        warnings.extend(self.missing_at_end());
         warnings
     }
 
@@ -267,6 +285,17 @@ impl Recording {
                 self.books.gap_count,
                 if self.books.gap_count == 1 { "" } else { "s" },
                 causes.join(", ")
+            )
+        })
+    }
+
+    fn missing_at_end(&self) -> Option<String> {
+        let samples = self.books.missing_at_end;
+        (samples > 0).then(|| {
+            format!(
+                "Its end is missing, {samples} samples ({:.3} s): the device had produced them by then, and \
+                 they did not arrive. The computer may have slept, or the connection hung.",
+                seconds(samples)
             )
         })
     }
@@ -389,7 +418,7 @@ const HEAD_BYTES: u64 = 1 << 16;
 /// The format of a file, also of one whose first bytes are damaged; none if it
 /// is no recording.
 fn format_of(path: &Path) -> io::Result<Option<Format>> {
-    let mut file = File::open(path)?;
+    let mut file = input::open(path)?;
     let mut head = Vec::new();
     (&mut file).take(HEAD_BYTES).read_to_end(&mut head)?;
     if head.starts_with(MAGIC) {

@@ -44,6 +44,10 @@ pub const COLUMNS: [(&str, &str); 14] = [
     ),
 ];
 
+/// End of all ticks and other counts of a recording: centuries. A file with larger ones is none of
+/// ours, however right its checksums are.
+pub(crate) const END_TICK: u64 = 1 << 48;
+
 /// A sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {

@@ -8,16 +8,18 @@ use crate::line::{Line, failure};
 use crate::progress::Progress;
 use crate::shell;
 use crate::status_line::StatusLine;
-use crepitus_client::{Begin, Client};
+use crepitus_client::{Begin, Client, Event};
 use crepitus_files::output::{folder_of, sync_folder_of, temporary_in};
 use crepitus_protocol::Revision;
 use crepitus_protocol::telemetry::Block;
 use crepitus_recording::{
-    Damage, Metadata, RecordError, Recorder, Recording, Totals, Write, is_recording, parquet_writer,
+    Damage, Ending, Metadata, RecordError, Recorder, Recording, Totals, Write, is_recording,
+    parquet_writer,
 };
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// A recording in progress.
 pub(crate) struct Recorded {
@@ -66,13 +68,59 @@ impl Recorded {
         fs::remove_file(&file).map_err(|e| Failure::at(&file, "cannot be removed", &e))
     }
 
+    /// Compares the recording with what the device has produced so far. After a sleep of the computer,
+    /// what is still under way is recorded, too, and the rest is the shortfall.
+    pub(crate) fn catch_up(&mut self, client: &mut Client<Line>) -> Result<Shortfall, Failure> {
+        let mut shortfall = Shortfall::default();
+        if !client.is_connected() || self.recorder.totals().received == 0 {
+            return Ok(shortfall);
+        }
+        let Ok(status) = client.status() else {
+            return Ok(shortfall);
+        };
+        let mut next_tick = self.recorder.next_tick();
+        // Of a drive that has restarted it is less.
+        if status.tick.saturating_sub(next_tick) <= UNDER_WAY_TICKS {
+            return Ok(shortfall);
+        }
+        let mut blocks = Vec::new();
+        let until = client.now() + CATCH_UP_TIMEOUT;
+        let mut heard = client.now();
+        while next_tick < status.tick {
+            let now = client.now();
+            if now >= until || now.saturating_sub(heard) >= CATCH_UP_SILENCE {
+                break;
+            }
+            match client.pump(CATCH_UP_POLL) {
+                Ok(Some(Event::Block(arrival))) => {
+                    heard = client.now();
+                    shortfall.samples += arrival.block.first_tick.saturating_sub(next_tick);
+                    next_tick = next_tick.max(arrival.block.end_tick());
+                    blocks.push(arrival.block);
+                }
+                Ok(Some(Event::Lost(_))) | Err(_) => break,
+                Ok(_) => {}
+            }
+        }
+        shortfall.samples += status.tick.saturating_sub(next_tick);
+        if shortfall.samples <= UNDER_WAY_TICKS {
+            // All of it is there: the recording ends where it was to end.
+            return Ok(Shortfall::default());
+        }
+        shortfall.produced_to_tick = Some(status.tick);
+        for block in blocks {
+            self.block(client, &block)?;
+        }
+        Ok(shortfall)
+    }
+
     /// Finishes the file; none if there is no sample, and then no file either.
-    pub(crate) fn finish(self) -> Result<Option<Totals>, Failure> {
+    pub(crate) fn finish(self, ending: Ending) -> Result<Option<Totals>, Failure> {
         if self.recorder.totals().received == 0 {
             return self.discard().map(|()| None);
         }
         let file = self.recorder.path().to_owned();
-        let totals = self.recorder.finish().map_err(stopped)?;
+        let totals = self.recorder.end(ending).map_err(stopped)?;
         in_final_format(&file, &self.id)?;
         Ok(Some(totals))
     }
@@ -86,6 +134,27 @@ impl Recorded {
         self.recorder.flush().map_err(stopped)?;
         Ok(Some(self.recorder.totals()))
     }
+}
+
+/// Samples that are always under way, at most: 100 ms of them.
+pub(crate) const UNDER_WAY_TICKS: u64 = 2_000;
+
+/// Timeout of catching up with the device at the end of a recording.
+const CATCH_UP_TIMEOUT: Duration = Duration::from_secs(2);
+
+/// Silence that ends catching up.
+const CATCH_UP_SILENCE: Duration = Duration::from_millis(250);
+
+/// Timeout of a poll while catching up.
+const CATCH_UP_POLL: Duration = Duration::from_millis(20);
+
+/// Samples that are missing at the end of a recording.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Shortfall {
+    /// Their number.
+    pub(crate) samples: u64,
+    /// Tick up to which the device had produced samples, if the recording was behind it.
+    pub(crate) produced_to_tick: Option<u64>,
 }
 
 /// There is no file to record into.

@@ -2,6 +2,7 @@
 
 use crate::failure::{Failure, warn};
 use crate::recorded::beside;
+use crepitus_files::input;
 use crepitus_files::output::{Claim, Folder, OwnedFolder};
 use crepitus_plot::{Figure, pictures};
 use crepitus_scene::Scene;
@@ -58,14 +59,13 @@ pub(crate) fn named_after(scene: &Path, before: &str, after: &str) -> Result<Pat
     Ok(Path::new("out").join(name))
 }
 
-/// The summary that a folder has; null if there is none. Opening a pipe would wait for its writer.
+/// Longest summary that is read, bytes.
+const SUMMARY_BYTES: u64 = 64_000_000;
+
+/// The summary that a folder has; null if there is none.
 fn summary_in(folder: &Path) -> Value {
-    let file = folder.join("summary.json");
-    let text = if file.is_file() {
-        fs::read_to_string(file).unwrap_or_default()
-    } else {
-        String::new()
-    };
+    let text =
+        input::read_to_string(&folder.join("summary.json"), SUMMARY_BYTES).unwrap_or_default();
     serde_json::from_str(&text).unwrap_or_default()
 }
 

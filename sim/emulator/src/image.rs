@@ -1,5 +1,6 @@
 //! Images: the part of an ELF file that lies in flash, and its symbols.
 
+use crepitus_files::input::{self, InputError};
 use object::elf::{EM_ARM, PT_LOAD};
 use object::read::elf::{ElfFile32, FileHeader as _, ProgramHeader as _};
 use object::{LittleEndian, Object as _, SymbolKind};
@@ -22,7 +23,7 @@ pub enum ImageError {
         /// Path of the file.
         path: PathBuf,
         /// Cause.
-        source: std::io::Error,
+        source: InputError,
     },
     /// Not a little-endian ELF file of 32 bits, or cut off.
     #[error("not an ELF image: {0}")]
@@ -51,6 +52,9 @@ pub struct Symbol {
 /// software starts, no protection.
 const OPTION_BYTES: u32 = 0x0fff_aae1;
 
+/// Longest file of an image, bytes: most of it is for a debugger.
+const MOST_BYTES: u64 = 256 << 20;
+
 /// An image.
 #[derive(Clone, Debug)]
 pub struct Image {
@@ -67,7 +71,7 @@ impl Image {
     /// # Errors
     /// [`ImageError`].
     pub fn read(path: &Path) -> Result<Self, ImageError> {
-        let bytes = std::fs::read(path).map_err(|source| ImageError::Read {
+        let bytes = input::read(path, MOST_BYTES).map_err(|source| ImageError::Read {
             path: path.to_owned(),
             source,
         })?;

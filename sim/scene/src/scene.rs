@@ -17,6 +17,7 @@ pub use solver::{Precision, SolverChoice};
 use crate::document::{Document, Range, Section, Value};
 use crate::error::SceneError;
 use crate::reference::symptoms::NAMES;
+use crepitus_files::input;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use crepitus_plant::actuator::Actuator;
@@ -25,8 +26,6 @@ use crepitus_plant::chain::Body;
 use crepitus_plant::effect::{Context, Effect, Given};
 use crepitus_plant::{Motion, Plant};
 use solver::{REFERENCE, read_solver, read_trace_step};
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// The only version of scene files so far.
@@ -279,9 +278,6 @@ impl Scene {
     }
 }
 
-/// The longest scene file; a device file may have no end.
-const MOST_BYTES: u64 = 16_000_000;
-
 /// The text of a file.
 pub(crate) fn text_of(file: &Path) -> Result<String, SceneError> {
     let whole = |message: String| SceneError {
@@ -290,17 +286,8 @@ pub(crate) fn text_of(file: &Path) -> Result<String, SceneError> {
         key: String::new(),
         message,
     };
-    let mut bytes = Vec::new();
-    File::open(file)
-        .and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes))
-        .map_err(|e| whole(format!("cannot be read: {e}")))?;
-    if bytes.len() as u64 > MOST_BYTES {
-        return Err(whole(format!(
-            "is longer than {} MB: this is no scene",
-            MOST_BYTES / 1_000_000
-        )));
-    }
-    String::from_utf8(bytes).map_err(|e| whole(format!("is not UTF-8 text: {}", e.utf8_error())))
+    input::read_to_string(file, input::TEXT_BYTES)
+        .map_err(|e| whole(format!("cannot be read: {e}")))
 }
 
 /// Effects as a scene file names them.

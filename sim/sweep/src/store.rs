@@ -6,6 +6,7 @@ use crate::row::Row;
 use crate::running::Running;
 use crate::table::{self, Format, TableError, Written};
 use crate::traced::Traces;
+use crepitus_files::input;
 use crepitus_files::output::{
     Claim, Hashed, OutputError, OwnedFolder, State, check_folder, lock_folder,
 };
@@ -431,7 +432,7 @@ fn read_about(folder: &Path) -> Result<About, StoreError> {
             });
         }
         entry => entry
-            .and_then(|_| fs::read_to_string(&file))
+            .and_then(|_| Ok(input::read_to_string(&file, input::TEXT_BYTES)?))
             .map_err(at(&file))?,
     };
     serde_json::from_str(&text).map_err(|e| StoreError::Unreadable {

@@ -5,6 +5,7 @@
 //! may have given the pty to somebody's terminal since; or somebody has replaced it.
 
 use super::folder::make_user_folder;
+use crepitus_files::input;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -140,7 +141,7 @@ pub(super) fn standing(link: &Path) -> Standing {
 
 /// Target that this link should have, if a program serves a simulated device there.
 fn pty_of(link: &Path) -> Option<PathBuf> {
-    let mut lock = File::open(lock_of(link)).ok()?;
+    let mut lock = input::open(&lock_of(link)).ok()?;
     if !matches!(lock.try_lock_shared(), Err(TryLockError::WouldBlock)) {
         return None;
     }

@@ -40,6 +40,11 @@ pub(super) fn is_terminal(port: &str) -> bool {
     }
 }
 
+/// Returns whether a port is a pseudo-terminal, which belongs to the user of the program that made it.
+pub(super) fn is_pseudo_terminal(port: &str) -> bool {
+    fs::canonicalize(port).is_ok_and(|port| port.starts_with("/dev/pts"))
+}
+
 /// The group with permission for this port.
 #[cfg(unix)]
 pub(super) fn group_of(port: &str) -> Option<String> {

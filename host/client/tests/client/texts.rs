@@ -151,6 +151,7 @@ fn every_port_error_has_a_remedy() {
             port: port(),
             group: "dialout".into(),
         },
+        TransportError::OthersTerminal { port: port() },
         TransportError::NotSerial { port: port() },
         TransportError::Open {
             port: port(),

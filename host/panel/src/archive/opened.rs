@@ -1,7 +1,7 @@
 //! A recording that is open.
 
 use crepitus_lesson::{By, Session};
-use crepitus_live::{Bin, Envelope};
+use crepitus_live::{Bin, Bins};
 use crepitus_protocol::parameters::{Kind, PARAMETERS};
 use crepitus_protocol::{TICKS_PER_S, Values};
 use crepitus_recording::{Recording, named_values, seconds};
@@ -24,18 +24,22 @@ pub(crate) struct Trace {
     pub(crate) bins: Vec<Bin>,
 }
 
+/// Bins with their numbers, in order; none where the recording has no samples. So its length is that
+/// of the file, whatever times stand in it.
+type Numbered = Vec<(u64, Bin)>;
+
 /// Samples of a part of it.
 struct Detail {
-    first: u64,
-    rows: Vec<Bin>,
+    /// The ticks that were read.
+    from: u64,
+    to: u64,
+    rows: Numbered,
 }
 
 /// A recording, and the lowest and highest value of each of its milliseconds.
 pub(crate) struct Opened {
     recording: Recording,
-    /// Number of the first bin.
-    first: u64,
-    bins: Vec<Bin>,
+    bins: Numbered,
     /// Part that was read in detail last.
     detail: Option<Detail>,
     breaks: u64,
@@ -44,32 +48,15 @@ pub(crate) struct Opened {
 impl Opened {
     /// Reads all of it once.
     pub(crate) fn new(recording: Recording) -> Result<Self, String> {
-        let mut envelope = Envelope::new(ROWS_PER_BIN);
-        let mut first = None;
-        let mut bins: Vec<Bin> = Vec::new();
-        let mut take = |(number, more): (u64, Vec<Bin>)| {
-            if more.is_empty() {
-                return;
-            }
-            let first = *first.get_or_insert(number);
-            // A gap that the envelope has cut.
-            let here = usize::try_from(number - first).unwrap_or(usize::MAX);
-            if here > bins.len() && here < usize::MAX / 2 {
-                bins.resize(here, Bin::GAP);
-            }
-            bins.extend(more);
-        };
-        for (row, count) in recording.rows().map_err(|e| e.to_string())?.zip(0_u64..) {
-            envelope.take(&row.map_err(|e| e.to_string())?);
-            if count.is_multiple_of(100_000) {
-                take(envelope.complete());
-            }
+        let mut open = Bins::new(ROWS_PER_BIN);
+        let mut bins = Numbered::new();
+        for row in recording.rows().map_err(|e| e.to_string())? {
+            bins.extend(open.take(&row.map_err(|e| e.to_string())?));
         }
-        take(envelope.finish());
-        let breaks = bins.iter().map(|bin| u64::from(bin.breaks)).sum();
+        bins.extend(open.finish());
+        let breaks = bins.iter().map(|(_, bin)| u64::from(bin.breaks)).sum();
         Ok(Self {
             recording,
-            first: first.unwrap_or(0),
             bins,
             detail: None,
             breaks,
@@ -77,12 +64,13 @@ impl Opened {
     }
 
     fn begin_s(&self) -> f64 {
-        seconds(self.first * u64::from(ROWS_PER_BIN))
+        let first = self.bins.first().map_or(0, |(number, _)| *number);
+        seconds(first * u64::from(ROWS_PER_BIN))
     }
 
     fn end_s(&self) -> f64 {
-        let count = u64::try_from(self.bins.len()).unwrap_or(0);
-        seconds((self.first + count) * u64::from(ROWS_PER_BIN))
+        let end = self.bins.last().map_or(0, |(number, _)| number + 1);
+        seconds(end * u64::from(ROWS_PER_BIN))
     }
 
     /// Facts about the recording.
@@ -141,31 +129,22 @@ impl Opened {
         let to_s = to_s.min(self.end_s()).max(from_s);
         let bin_s = (to_s - from_s) / f64::from(points);
         if bin_s >= seconds(u64::from(ROWS_PER_BIN)) || to_s - from_s > LONGEST_DETAIL_S {
-            return Ok(joined(
-                &self.bins,
-                self.first,
-                ROWS_PER_BIN,
-                from_s,
-                to_s,
-                points,
-            ));
+            return Ok(joined(&self.bins, ROWS_PER_BIN, from_s, to_s, points));
         }
         let detail = self.detail(from_s, to_s)?;
-        Ok(joined(&detail.rows, detail.first, 1, from_s, to_s, points))
+        Ok(joined(&detail.rows, 1, from_s, to_s, points))
     }
 
     /// The samples of a time, read again if they are not at hand.
     fn detail(&mut self, from_s: f64, to_s: f64) -> Result<&Detail, String> {
         let (from, to) = (tick(from_s), tick(to_s) + 1);
-        let has = |detail: &Detail| {
-            let end = detail.first + u64::try_from(detail.rows.len()).unwrap_or(0);
-            detail.first <= from && to.min(tick(self.end_s())) <= end
-        };
+        let has = |detail: &Detail| detail.from <= from && to <= detail.to;
         if !self.detail.as_ref().is_some_and(has) {
             // More on both sides, for the next look.
             let more = to - from;
             let (from, to) = (from.saturating_sub(more), to + more);
-            let mut envelope = Envelope::new(1);
+            let mut open = Bins::new(1);
+            let mut rows = Numbered::new();
             for row in self.recording.rows().map_err(|e| e.to_string())? {
                 let row = row.map_err(|e| e.to_string())?;
                 let at = tick(row.time_s);
@@ -173,11 +152,11 @@ impl Opened {
                     break;
                 }
                 if at >= from {
-                    envelope.take(&row);
+                    rows.extend(open.take(&row));
                 }
             }
-            let (first, rows) = envelope.finish();
-            self.detail = Some(Detail { first, rows });
+            rows.extend(open.finish());
+            self.detail = Some(Detail { from, to, rows });
         }
         self.detail
             .as_ref()
@@ -237,30 +216,33 @@ fn tick(time_s: f64) -> u64 {
     (time_s * f64::from(TICKS_PER_S)).round() as u64
 }
 
-/// Joins the bins of a time to at most `points`. A bin has `rows` rows; `first` is the number of the
-/// first one.
-fn joined(bins: &[Bin], first: u64, rows: u32, from_s: f64, to_s: f64, points: u16) -> Trace {
+/// Joins the bins of a time, each of `rows` rows, to at most `points`.
+fn joined(bins: &[(u64, Bin)], rows: u32, from_s: f64, to_s: f64, points: u16) -> Trace {
     let rows = u64::from(rows);
+    let first = bins.first().map_or(0, |(number, _)| *number);
+    let end = bins.last().map_or(0, |(number, _)| number + 1);
     let from = (tick(from_s) / rows).max(first);
     let to = (tick(to_s).div_ceil(rows)).max(from + 1);
     let per = (to - from).div_ceil(u64::from(points)).max(1);
     // Of whole bins, so that a picture does not change when it is moved.
     let from = (from / per * per).max(first);
-    let skip = usize::try_from(from - first).unwrap_or(usize::MAX);
-    let count = usize::try_from(to - from).unwrap_or(usize::MAX);
-    let chunk = usize::try_from(per).unwrap_or(usize::MAX);
-    let part: Vec<_> = bins.iter().skip(skip).take(count).copied().collect();
-    let bins = part.chunks(chunk).map(|chunk| {
-        let mut bin = Bin::GAP;
-        for part in chunk {
-            bin.join(part);
+    let to = to.min(end).max(from);
+    let place = |number: u64| usize::try_from((number - from) / per).unwrap_or(usize::MAX);
+    let mut all = vec![Bin::GAP; place(to + per - 1)];
+    let skip = bins.partition_point(|(number, _)| *number < from);
+    for (number, bin) in bins
+        .iter()
+        .skip(skip)
+        .take_while(|(number, _)| *number < to)
+    {
+        if let Some(joined) = all.get_mut(place(*number)) {
+            joined.join(bin);
         }
-        bin
-    });
+    }
     Trace {
         begin_s: seconds(from * rows),
         bin_s: seconds(per * rows),
-        bins: bins.collect(),
+        bins: all,
     }
 }
 
@@ -270,17 +252,19 @@ mod tests {
     use crepitus_live::Marks;
     use crepitus_recording::Row;
 
-    fn bins(ticks: std::ops::Range<u64>, rows: u32) -> (u64, Vec<Bin>) {
-        let mut envelope = Envelope::new(rows);
+    fn bins(ticks: impl Iterator<Item = u64>, rows: u32) -> Numbered {
+        let mut open = Bins::new(rows);
+        let mut bins = Numbered::new();
         for tick in ticks {
             #[expect(clippy::cast_precision_loss, reason = "small")]
-            envelope.take(&Row {
+            bins.extend(open.take(&Row {
                 time_s: seconds(tick),
                 torque_nm: tick as f32,
                 ..Row::default()
-            });
+            }));
         }
-        envelope.finish()
+        bins.extend(open.finish());
+        bins
     }
 
     #[test]
@@ -292,8 +276,8 @@ mod tests {
 
     #[test]
     fn a_trace_has_the_extremes_of_its_time() {
-        let (first, all) = bins(0..20_000, 20);
-        let trace = joined(&all, first, 20, 0.0, 1.0, 10);
+        let all = bins(0..20_000, 20);
+        let trace = joined(&all, 20, 0.0, 1.0, 10);
         assert_eq!(
             (trace.begin_s, trace.bin_s, trace.bins.len()),
             (0.0, 0.1, 10)
@@ -309,8 +293,8 @@ mod tests {
 
     #[test]
     fn every_sample_is_shown_where_there_is_room() {
-        let (first, all) = bins(1_000..3_000, 1);
-        let trace = joined(&all, first, 1, 0.1, 0.105, 500);
+        let all = bins(1_000..3_000, 1);
+        let trace = joined(&all, 1, 0.1, 0.105, 500);
         assert_eq!(
             (trace.begin_s, trace.bin_s, trace.bins.len()),
             (0.1, 5e-5, 100)
@@ -321,11 +305,8 @@ mod tests {
 
     #[test]
     fn a_gap_stays_one() {
-        let (first, mut all) = bins(0..2_000, 20);
-        for bin in &mut all[40..60] {
-            *bin = Bin::GAP;
-        }
-        let trace = joined(&all, first, 20, 0.0, 0.1, 10);
+        let all = bins((0..800).chain(1_200..2_000), 20);
+        let trace = joined(&all, 20, 0.0, 0.1, 10);
         let gaps: Vec<_> = trace
             .bins
             .iter()
@@ -339,9 +320,27 @@ mod tests {
         );
     }
 
+    /// What stands before and after a gap is shown, however long it is, and nothing is kept for it.
+    #[test]
+    fn a_gap_of_centuries_takes_no_memory() {
+        for gap in [25 * 20_000, 86_400 * 20_000, 1 << 47] {
+            let end = gap + 2_000;
+            let all = bins((0..1_000).chain(gap..end), 20);
+            assert_eq!(all.len(), 50 + 100 + usize::from(gap % 20 != 0));
+            let trace = joined(&all, 20, 0.0, seconds(end), 1_000);
+            assert!(trace.bins.len() <= 1_000, "{}", trace.bins.len());
+            let shown = |bin: &&Bin| bin.marks.0 & Marks::GAP == 0;
+            assert_eq!(trace.bins.iter().find(shown).unwrap().torque_nm.low, 0.0);
+            #[expect(clippy::cast_precision_loss, reason = "as the fixture")]
+            let last = (end - 1) as f32;
+            let shown = trace.bins.iter().rev().find(shown).unwrap();
+            assert_eq!(shown.torque_nm.high, last);
+        }
+    }
+
     #[test]
     fn a_time_beyond_the_end_has_no_bins() {
-        let (first, all) = bins(0..2_000, 20);
-        assert!(joined(&all, first, 20, 5.0, 6.0, 10).bins.is_empty());
+        let all = bins(0..2_000, 20);
+        assert!(joined(&all, 20, 5.0, 6.0, 10).bins.is_empty());
     }
 }

@@ -172,6 +172,19 @@ impl<T: Transport> Keeper<'_, T> {
         }
     }
 
+    /// Reports on the page a file that could not be made.
+    pub(super) fn check_files(&mut self) {
+        while let Some(at) = self.sealing.iter().position(JoinHandle::is_finished) {
+            if let Ok(Err(error)) = self.sealing.swap_remove(at).join() {
+                self.message = Some(format!(
+                    "no Parquet file was made of the recording: {error}; what was recorded is whole, in the format \
+                     of a recording in progress"
+                ));
+                self.status_is_due = true;
+            }
+        }
+    }
+
     /// Waits for the files that are being made.
     pub(super) fn wait_for_files(&mut self) {
         for thread in self.sealing.drain(..) {

@@ -1,6 +1,7 @@
 //! The summary of a recording.
 
 use crate::books::Totals;
+use crate::ending::Ending;
 use crate::metadata::Controller;
 use crate::parameters::History;
 use crate::recording::{Recording, seconds};
@@ -26,8 +27,12 @@ pub struct RecordingSummary {
     pub comms: Controller,
     /// The drive controller.
     pub drive: Option<Controller>,
-    /// Whether the recording was finished, not cut off.
+    /// True if the recording was finished, not cut off, and nothing is missing at its end.
     pub complete: bool,
+    /// End of the recording; null if its program did not note it.
+    pub ending: Option<Ending>,
+    /// Samples that the device had produced by then and that did not arrive.
+    pub missing_at_end: u64,
     /// Recorded time, s: that of its samples.
     pub duration_s: f64,
     /// Time from the first to the last sample, s, gaps included; a restart of the drive takes
@@ -53,8 +58,8 @@ pub struct RecordingSummary {
     pub torque: Option<TorqueSummary>,
     /// Armed time in which each reason limited the torque, s.
     pub limited_s: BTreeMap<&'static str, f64>,
-    /// Samples whose count was rejected.
-    pub lost_samples: u64,
+    /// Samples that were received and whose count of the encoder the drive had rejected.
+    pub rejected_counts: u64,
     /// Ticks whose rendering was late.
     pub late_ticks: u64,
     /// Every parameter set in use, in order: all parameters, then those that
@@ -166,6 +171,8 @@ impl Tally {
             comms: metadata.comms.clone(),
             drive: metadata.drive.clone(),
             complete: recording.is_complete(),
+            ending: recording.ending().cloned(),
+            missing_at_end: books.missing_at_end,
             duration_s: seconds(self.rows),
             span_s: self
                 .ends_s
@@ -184,7 +191,7 @@ impl Tally {
                 .into_iter()
                 .map(|(reason, ticks)| (reason, seconds(ticks)))
                 .collect(),
-            lost_samples: self.lost,
+            rejected_counts: self.lost,
             late_ticks: self.late,
             parameters: recording.parameters().clone(),
             warnings,

@@ -1,8 +1,11 @@
 //! Frames of the file.
 
 use crate::books::{Begin, Totals};
+
+use crate::ending::Ending;
 use crate::metadata::Metadata;
 use crate::parameters::Named;
+use crate::row::END_TICK as MOST;
 use crepitus_protocol::Lane;
 use crepitus_protocol::frame::{CRC, CRC_BYTES, DELIMITER, Frame, TooLong, encode};
 use crepitus_protocol::telemetry::Block;
@@ -47,6 +50,9 @@ pub(crate) struct Checkpoint {
     pub(crate) totals: Totals,
     /// The recording ends here.
     pub(crate) is_end: bool,
+    /// End of the recording, if its program says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) ending: Option<Ending>,
 }
 
 impl Entry {
@@ -68,17 +74,17 @@ pub(crate) fn of_block(block: &Block) -> Result<Frame, TooLong> {
     encode(Lane::Telemetry, block)
 }
 
-/// More than any count reaches: centuries of ticks. A file with larger ones is
-/// none of ours, however right its checksums are.
-const MOST: u64 = 1 << 48;
-
 impl Entry {
     fn is_plausible(&self) -> bool {
         match self {
             Self::Header(_) => true,
             Self::Subscribed(begin) => begin.first_tick < MOST,
             Self::Parameters { number, .. } => *number < MOST,
-            Self::Checkpoint(checkpoint) => checkpoint.number < MOST,
+            Self::Checkpoint(checkpoint) => {
+                let ending = checkpoint.ending.as_ref();
+                let end = ending.and_then(|ending| ending.produced_to_tick);
+                checkpoint.number < MOST && end.is_none_or(|tick| tick < MOST)
+            }
         }
     }
 }

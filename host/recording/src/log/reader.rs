@@ -3,6 +3,7 @@
 use super::frame::{Checkpoint, Content, Entry, Owner};
 use super::{FRAME_LIMIT, MAGIC, repair};
 use crate::books::{Begin, Ledger, Totals};
+use crate::ending::Ending;
 use crate::findings::Findings;
 use crate::metadata::Metadata;
 use crate::parameters::{History, Named, ParameterSet, values_of};
@@ -48,6 +49,7 @@ pub(crate) struct LogReader<R> {
     /// First tick of a subscription that goes back, and the tick that was due before it.
     went_back: Option<(u64, u64)>,
     is_ended: bool,
+    ending: Option<Ending>,
     /// First byte of what follows the end.
     more_from: Option<u64>,
     findings: Findings,
@@ -68,6 +70,8 @@ pub(crate) struct Scanned {
     pub(crate) ledger: Ledger,
     pub(crate) history: History,
     pub(crate) is_complete: bool,
+    /// End that its program has noted.
+    pub(crate) ending: Option<Ending>,
     is_disordered: bool,
     said: Option<Totals>,
     assumed: Findings,
@@ -163,6 +167,7 @@ impl<R: BufRead> LogReader<R> {
             repeated: 0,
             went_back: None,
             is_ended: false,
+            ending: None,
             more_from: None,
             findings,
         })
@@ -394,12 +399,17 @@ impl<R: BufRead> LogReader<R> {
         }
         self.ledger.expect_received(received);
         self.is_ended = checkpoint.is_end;
+        if let Some(ending) = &checkpoint.ending {
+            self.ledger.ended(ending);
+            self.ending = Some(ending.clone());
+        }
         if checkpoint.is_end && self.findings.is_empty() {
             let totals = self.ledger.books().totals;
             if totals != checkpoint.totals {
                 self.findings.add(format!(
-                    "Its samples are {totals:?}, but its books say {:?}",
-                    checkpoint.totals
+                    "Its samples were counted as {}, but its end says {}",
+                    totals.text(),
+                    checkpoint.totals.text()
                 ));
             }
         }
@@ -422,6 +432,7 @@ impl<R: BufRead> LogReader<R> {
             ledger: self.ledger,
             history: self.history,
             is_complete: self.is_ended,
+            ending: self.ending,
             cut_bytes,
             findings: self.findings,
             is_disordered: self.repeated > 0,

@@ -4,6 +4,7 @@ use super::disk::{Background, Disk};
 use super::frame::{Checkpoint, Entry, of_block};
 use super::{CHECKPOINT_BLOCKS, MAGIC};
 use crate::books::{Begin, Ledger, Totals};
+use crate::ending::{EndCause, Ending};
 use crate::metadata::Metadata;
 use crate::parameters::named_values;
 use crepitus_files::output::{folder_of, sync_folder_of, temporary_in};
@@ -158,7 +159,7 @@ impl<D: Disk> Recorder<D> {
         self.put(&frame);
         self.blocks += 1;
         if self.blocks >= CHECKPOINT_BLOCKS {
-            self.checkpoint(false)?;
+            self.checkpoint(None)?;
             self.flush()?;
             self.disk
                 .sync()
@@ -203,6 +204,11 @@ impl<D: Disk> Recorder<D> {
         self.ledger.books().totals
     }
 
+    /// The tick after the last sample.
+    pub fn next_tick(&self) -> u64 {
+        self.ledger.next_tick()
+    }
+
     /// The file.
     pub fn path(&self) -> &Path {
         &self.path
@@ -221,12 +227,22 @@ impl<D: Disk> Recorder<D> {
         written.map_err(|error| self.failed(WRITING, error))
     }
 
-    /// Finishes the recording: the last checkpoint, then everything is durable.
+    /// Finishes the recording as its user intended.
+    ///
+    /// # Errors
+    /// Those of [`Self::end`].
+    pub fn finish(self) -> Result<Totals, RecordError> {
+        self.end(Ending::of(EndCause::Requested))
+    }
+
+    /// Finishes the recording: the last checkpoint with its end, then everything is durable. Samples
+    /// that the device had produced by then, and that did not arrive, count as missing.
     ///
     /// # Errors
     /// [`RecordError`] if a write fails.
-    pub fn finish(mut self) -> Result<Totals, RecordError> {
-        self.checkpoint(true)?;
+    pub fn end(mut self, ending: Ending) -> Result<Totals, RecordError> {
+        self.ledger.ended(&ending);
+        self.checkpoint(Some(ending))?;
         self.flush()?;
         self.disk
             .finish()
@@ -234,14 +250,15 @@ impl<D: Disk> Recorder<D> {
         Ok(self.totals())
     }
 
-    fn checkpoint(&mut self, is_end: bool) -> Result<(), RecordError> {
+    fn checkpoint(&mut self, ending: Option<Ending>) -> Result<(), RecordError> {
         let sum = std::mem::take(&mut self.sum).finalize();
         let checkpoint = Entry::Checkpoint(Checkpoint {
             id: self.id.clone(),
             number: self.checkpoints,
             sha256: crepitus_files::output::hex(&sum),
             totals: self.totals(),
-            is_end,
+            is_end: ending.is_some(),
+            ending,
         });
         self.entry(&checkpoint)?;
         // It is covered by its own checksum.

@@ -1,7 +1,8 @@
 //! Columns of the file: the same as those of CSV.
 
-use super::{other, words};
-use crate::row::{COLUMNS, Row};
+use super::{GROUP_ROWS, other, words};
+use crate::recording::seconds;
+use crate::row::{COLUMNS, END_TICK, Row};
 use parquet::basic::{Compression, Encoding, ZstdLevel};
 use parquet::column::reader::{get_column_reader, get_typed_column_reader};
 use parquet::column::writer::ColumnWriter;
@@ -170,6 +171,12 @@ pub(super) fn read<R: ChunkReader + 'static>(
     group: &RowGroupMetaData,
 ) -> io::Result<Vec<Row>> {
     let count = usize::try_from(group.num_rows()).map_err(io::Error::other)?;
+    // Before there is memory for them.
+    if count > GROUP_ROWS {
+        return Err(implausible(format!(
+            "a group says that it has {count} rows, and at most {GROUP_ROWS} are written"
+        )));
+    }
     let mut rows = vec![Row::default(); count];
     let mut texts: [Vec<ByteArray>; 4] = [const { Vec::new() }; 4];
     for (at, (name, _)) in COLUMNS.iter().enumerate() {
@@ -203,7 +210,19 @@ pub(super) fn read<R: ChunkReader + 'static>(
         }
     }
     set_flags(&mut rows, &texts)?;
+    let end_s = seconds(END_TICK);
+    let is_plausible = |row: &Row| row.tick < END_TICK && (0.0..end_s).contains(&row.time_s);
+    if let Some(row) = rows.iter().find(|row| !is_plausible(row)) {
+        return Err(implausible(format!(
+            "tick {} at {} s is later than any device counts",
+            row.tick, row.time_s
+        )));
+    }
     Ok(rows)
+}
+
+fn implausible(what: String) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, what)
 }
 
 /// Sets the flags from the words: few of them differ.

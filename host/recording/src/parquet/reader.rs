@@ -7,6 +7,7 @@ use crate::findings::Findings;
 use crate::metadata::Metadata;
 use crate::row::Row;
 use bytes::{Buf, Bytes, buf};
+use crepitus_files::input;
 use crepitus_protocol::frame::CRC;
 use parquet::errors::Result as ParquetResult;
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
@@ -31,7 +32,7 @@ const TAIL: usize = 8;
 impl Reader {
     /// Reads all of it once.
     pub(crate) fn open(path: &Path) -> io::Result<(Self, About, Findings)> {
-        let file = File::open(path)?;
+        let file = input::open(path)?;
         let mut findings = Findings::default();
         let footer = footer(&file)?;
         let is_whole = sum_is_right(&file, footer.as_ref())?;

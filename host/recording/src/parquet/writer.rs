@@ -46,7 +46,8 @@ pub(crate) fn write(
 ) -> io::Result<u64> {
     let about = About {
         metadata: recording.metadata().clone(),
-        is_complete: recording.is_complete(),
+        is_complete: recording.is_ended(),
+        ending: recording.ending().cloned(),
         parameters: recording.parameters().clone(),
         books: recording.books().clone(),
         damage: recording.inherited_damage(),

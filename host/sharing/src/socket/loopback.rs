@@ -9,6 +9,7 @@
 //!                    <─── ANSWER ────
 //! ```
 
+use crepitus_files::input;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, ErrorKind, Read, Write};
@@ -28,6 +29,9 @@ const CONNECT: Duration = Duration::from_millis(100);
 /// Characters of a proof: 128 random bits.
 const PROOF_BYTES: usize = 32;
 
+/// Longest file that is read, bytes.
+const MEETING_BYTES: u64 = 4_096;
+
 /// Content of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Meeting {
@@ -46,7 +50,7 @@ impl Meeting {
     }
 
     fn read(path: &Path) -> io::Result<Self> {
-        let text = fs::read_to_string(path)?;
+        let text = input::read_to_string(path, MEETING_BYTES)?;
         let words: Vec<&str> = text.split_whitespace().collect();
         let is_proof = |word: &str| word.len() == PROOF_BYTES;
         match *words.as_slice() {

@@ -21,7 +21,7 @@ use crepitus_files::output::Inputs;
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};
-use crepitus_recording::{Damage, Recording, RecordingSummary};
+use crepitus_recording::{Damage, EndCause, Ending, Recording, RecordingSummary};
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, preset};
 use serde_json::json;
@@ -120,7 +120,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let Examination {
         recording, made, ..
     } = examination;
-    recording.finish()?;
+    recording.finish(Ending::of(EndCause::Time))?;
     narration.step("examination", &examination_text(&client, &made))?;
 
     let recording = Recording::open(&file, Damage::Refuse).map_err(Failure::input)?;

@@ -62,12 +62,6 @@ pub(crate) struct Arguments {
 /// Serves the panel until Ctrl-C.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     for file in &arguments.replay {
-        if !file.is_file() {
-            return Err(Failure::Input(format!(
-                "{}: there is no such recording",
-                file.display()
-            )));
-        }
         Recording::open(file, Damage::Salvage).map_err(Failure::input)?;
     }
     if let Some(folder) = &arguments.sessions {

@@ -1,5 +1,6 @@
 //! `crepitus params`: list, read, set and save a device's parameters.
 
+mod backup;
 mod changes;
 mod save_preset;
 mod source;
@@ -34,6 +35,8 @@ Examples:
   crepitus params diff monday-knee
   crepitus params reset clonus
   crepitus params save
+  crepitus params backup brace-7.toml
+  crepitus params restore brace-7.toml
 
 A set is one commit: all of its values take effect between two ticks, or none; torque then changes \
 within the slew limit. Values that are not saved are lost when the device is switched off.")]
@@ -100,6 +103,8 @@ enum Action {
     SavePreset(SavePreset),
     /// Save the current parameters for the next start.
     Save,
+    Backup(backup::Backup),
+    Restore(backup::Restore),
 }
 
 /// Runs the action.
@@ -113,6 +118,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         Action::Diff { what } => changes::diff(device, what.as_deref(), as_json),
         Action::Reset { effects } => changes::reset(device, effects, as_json),
         Action::SavePreset(preset) => save_preset::run(device, preset, as_json),
+        Action::Backup(arguments) => backup::backup(device, arguments, as_json),
+        Action::Restore(arguments) => backup::restore(device, arguments, as_json),
         Action::Save => {
             let mut client = connect(device)?;
             client

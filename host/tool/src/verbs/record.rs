@@ -2,14 +2,16 @@
 
 use crate::cli::{DeviceArguments, duration};
 use crate::failure::{Failure, print, print_json};
-use crate::following::{Arming, follow};
+use crate::following::{Arming, End, follow};
 use crate::interrupt;
-use crate::line::connect_to_arm;
-use crate::recorded::{Recorded, print_ended, report_command};
+use crate::line::{Line, connect_to_arm};
+use crate::recorded::{Recorded, Shortfall, UNDER_WAY_TICKS, print_ended, report_command};
 use clap::Args;
-use crepitus_client::Unheard;
+use crepitus_client::{Client, Unheard};
+use crepitus_connection::device_text;
 use crepitus_files::output::{Inputs, NewFile, OutputError, is_stdout};
-use crepitus_recording::Totals;
+use crepitus_protocol::State;
+use crepitus_recording::{EndCause, Ending, Totals, seconds};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -75,6 +77,40 @@ fn silent(unheard: Unheard) -> Failure {
     ))
 }
 
+/// The device produced samples that this program did not read in time.
+fn asleep(samples: u64) -> Failure {
+    Failure::Work(format!(
+        "{samples} samples ({:.3} s) are missing at the end of the recording: the device had produced them, and \
+         this program did not receive them; did the computer sleep, or was the program stopped?",
+        seconds(samples)
+    ))
+}
+
+/// The end of the recording, for its file.
+fn ending(client: &mut Client<Line>, end: &Result<End, Failure>, shortfall: Shortfall) -> Ending {
+    let status = if client.is_connected() {
+        client.status().ok()
+    } else {
+        None
+    };
+    let faults = status.map_or_else(Vec::new, |status| device_text::faults(&status));
+    let cause = match end {
+        Ok(End::Time) => EndCause::Time,
+        Ok(End::Requested) => EndCause::Requested,
+        Err(_) if !faults.is_empty() => EndCause::Fault,
+        Err(_) => match status {
+            None => EndCause::ConnectionLost,
+            Some(status) if status.state == State::Disarmed => EndCause::Disarmed,
+            Some(_) => EndCause::Error,
+        },
+    };
+    Ending {
+        cause,
+        faults,
+        produced_to_tick: shortfall.produced_to_tick,
+    }
+}
+
 /// Records.
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     interrupt::listen();
@@ -103,6 +139,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         arguments.arming,
         &mut recorded,
     );
+    let shortfall = recorded.catch_up(&mut client)?;
+    let ending = ending(&mut client, &end, shortfall);
     let unheard = client.unheard();
     client.end_telemetry();
     if let (Ok(_), Some(unheard)) = (&end, unheard) {
@@ -113,12 +151,17 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         });
     }
     // Finishes the file also after an error.
-    let totals = recorded.finish()?;
+    let totals = recorded.finish(ending)?;
     if let Err(failure) = end {
         return Err(match totals {
             Some(totals) => kept(failure, file, &totals),
             None => failure,
         });
+    }
+    if let Some(totals) = totals
+        && shortfall.samples > UNDER_WAY_TICKS
+    {
+        return Err(kept(asleep(shortfall.samples), file, &totals));
     }
     match totals {
         None if as_json => print_json(&json!({ "file": null })),

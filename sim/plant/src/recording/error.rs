@@ -1,6 +1,7 @@
 //! Errors of recordings, with position, cause and remedy.
 
 use super::{AngleUnit, MAX_BYTES, MAX_JOIN_DEG, MAX_ROWS, MIN_SAMPLES, Source};
+use crepitus_files::input::Kind;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -72,8 +73,8 @@ pub enum RecordingError {
         place: Place,
         source: std::io::Error,
     },
-    #[error("{place}: is not a file; name a CSV, .mot or .sto file")]
-    NotAFile { place: Place },
+    #[error("{place}: is {kind}, not a file; name a CSV, .mot or .sto file")]
+    NotAFile { place: Place, kind: Kind },
     #[error("{place}: has {bytes} bytes, at most {MAX_BYTES} are read; cut or thin the recording")]
     TooLarge { place: Place, bytes: u64 },
     #[error("{place}: has more than {MAX_ROWS} rows; cut or thin the recording")]

@@ -37,8 +37,9 @@ pub use repeat::{MAX_JOIN_DEG, smooth_cycle};
 pub use smooth::{CubicSegment, acceleration_ripple_rad_s2, smooth};
 pub use warning::Warning;
 
+use crepitus_files::input::{self, InputError};
 use std::fmt;
-use std::fs::{self, File};
+use std::fs::File;
 use std::path::Path;
 
 /// The fewest samples that make a motion: a cubic has four coefficients.
@@ -193,20 +194,21 @@ fn open(path: &Path) -> Result<File, RecordingError> {
         place: Place::file(path),
         source: io,
     };
-    // Before opening: a pipe would block, a device never end.
-    let metadata = fs::metadata(path).map_err(unreadable)?;
-    if !metadata.is_file() {
-        return Err(RecordingError::NotAFile {
+    let file = input::open(path).map_err(|error| match error {
+        InputError::Kind(kind) => RecordingError::NotAFile {
             place: Place::file(path),
-        });
-    }
-    if metadata.len() > MAX_BYTES {
+            kind,
+        },
+        error => unreadable(error.into()),
+    })?;
+    let bytes = file.metadata().map_err(unreadable)?.len();
+    if bytes > MAX_BYTES {
         return Err(RecordingError::TooLarge {
             place: Place::file(path),
-            bytes: metadata.len(),
+            bytes,
         });
     }
-    File::open(path).map_err(unreadable)
+    Ok(file)
 }
 
 fn is_opensim(path: &Path) -> bool {

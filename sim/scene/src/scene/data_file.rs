@@ -1,10 +1,10 @@
 //! A file that a scene reads beside its own.
 
+use crepitus_files::input;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
-use std::fs;
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// A file of data, identified by its content.
@@ -19,7 +19,16 @@ pub struct DataFile {
 impl DataFile {
     pub(super) fn of(path: &Path) -> io::Result<Self> {
         let mut sha256 = String::new();
-        for byte in Sha256::digest(fs::read(path)?) {
+        let mut sha = Sha256::new();
+        let mut piece = vec![0; 1 << 16];
+        let mut file = input::open(path)?;
+        loop {
+            match file.read(&mut piece)? {
+                0 => break,
+                read => sha.update(&piece[..read]),
+            }
+        }
+        for byte in sha.finalize() {
             let _ = write!(sha256, "{byte:02x}");
         }
         Ok(Self {

@@ -1,5 +1,6 @@
 //! Points of another program from a CSV file with a key of the scene over each column.
 
+use crepitus_files::input::{self, InputError};
 use std::io;
 use std::path::Path;
 
@@ -13,6 +14,9 @@ pub struct Points {
 /// Error of an invalid table of points.
 #[derive(Debug, thiserror::Error)]
 pub enum PointsError {
+    /// The file cannot be read.
+    #[error("cannot be read: {0}")]
+    File(#[from] InputError),
     /// The file cannot be read as CSV; the line is in the cause.
     #[error("{0}")]
     Csv(#[from] csv::Error),
@@ -45,8 +49,7 @@ impl Points {
     /// # Errors
     /// [`PointsError`].
     pub fn read(file: &Path) -> Result<Self, PointsError> {
-        let file = std::fs::File::open(file).map_err(csv::Error::from)?;
-        Self::from_csv(io::BufReader::new(file))
+        Self::from_csv(input::read(file, input::TABLE_BYTES)?.as_slice())
     }
 
     /// Reads CSV.

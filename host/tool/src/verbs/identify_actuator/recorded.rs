@@ -2,9 +2,8 @@
 
 use crate::failure::Failure;
 use clap::{Args, ValueHint};
+use crepitus_files::input;
 use crepitus_identify::actuator::Series;
-use std::fs::File;
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// Which recordings.
@@ -53,8 +52,8 @@ impl Recordings {
 }
 
 fn series(path: &Path) -> Result<Series, Failure> {
-    let file =
-        File::open(path).map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?;
-    Series::from_csv(BufReader::new(file))
+    let table = input::read(path, input::TABLE_BYTES)
+        .map_err(|error| Failure::Input(format!("{}: cannot be read: {error}", path.display())))?;
+    Series::from_csv(table.as_slice())
         .map_err(|error| Failure::Input(format!("{}: {error}", path.display())))
 }

@@ -80,8 +80,23 @@ fn recording(s: &RecordingSummary) -> Section {
         ("comms", device(&s.comms)),
     ];
     rows.extend(s.drive.as_ref().map(|drive| ("drive", device(drive))));
-    if s.lost_samples > 0 {
-        rows.push(("rejected counts", s.lost_samples.to_string()));
+    if let Some(ending) = &s.ending {
+        let text = match ending.faults.as_slice() {
+            [] => ending.cause.text().to_owned(),
+            faults => format!("{}: {}", ending.cause.text(), faults.join("; ")),
+        };
+        rows.push(("end", text));
+    }
+    if s.missing_at_end > 0 {
+        let text = format!(
+            "{} samples ({:.3} s)",
+            s.missing_at_end,
+            seconds(s.missing_at_end)
+        );
+        rows.push(("missing at the end", text));
+    }
+    if s.rejected_counts > 0 {
+        rows.push(("rejected counts", s.rejected_counts.to_string()));
     }
     if s.late_ticks > 0 {
         rows.push(("late ticks", s.late_ticks.to_string()));
