@@ -42,7 +42,7 @@ pub(super) struct Marker {
 }
 
 /// List in a folder.
-pub(super) enum Found {
+pub(super) enum ListState {
     None,
     Own(Marker),
     InTheWay(Reason),
@@ -50,14 +50,14 @@ pub(super) enum Found {
 
 impl Marker {
     /// Reads the list of a folder.
-    pub(super) fn read(folder: &Path) -> io::Result<Found> {
+    pub(super) fn read(folder: &Path) -> io::Result<ListState> {
         let path = folder.join(MARKER);
         let metadata = match fs::symlink_metadata(&path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Found::None),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(ListState::None),
             metadata => metadata?,
         };
         if let Some(reason) = kind(&metadata) {
-            return Ok(Found::InTheWay(reason));
+            return Ok(ListState::InTheWay(reason));
         }
         let mut bytes = Vec::new();
         File::open(&path)?
@@ -65,9 +65,9 @@ impl Marker {
             .read_to_end(&mut bytes)?;
         let text = String::from_utf8_lossy(&bytes);
         Ok(match text.split('\n').next().unwrap_or_default() {
-            HEADER => Found::Own(Self::parse(&text)),
-            header if header.starts_with(ANY_HEADER) => Found::InTheWay(Reason::OtherVersion),
-            _ => Found::InTheWay(Reason::Foreign),
+            HEADER => ListState::Own(Self::parse(&text)),
+            header if header.starts_with(ANY_HEADER) => ListState::InTheWay(Reason::OtherVersion),
+            _ => ListState::InTheWay(Reason::Foreign),
         })
     }
 

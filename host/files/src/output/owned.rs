@@ -1,6 +1,6 @@
 //! Folder into which files are written one by one.
 
-use super::marker::{self, Found, Marker, is_plain, kind};
+use super::marker::{self, ListState, Marker, is_plain, kind};
 use super::{Claim, InTheWay, MARKER, OutputError, Reason, TEMPORARY, sha256, temporary_in};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -63,9 +63,9 @@ impl OwnedFolder {
     pub fn open(folder: &Path, claim: Claim) -> Result<Self, OutputError> {
         let found = Marker::read(folder).map_err(failed(&folder.join(MARKER), READING))?;
         let (marker, has_list) = match found {
-            Found::None => (Marker::default(), false),
-            Found::Own(marker) => (marker, true),
-            Found::InTheWay(reason) => {
+            ListState::None => (Marker::default(), false),
+            ListState::Own(marker) => (marker, true),
+            ListState::InTheWay(reason) => {
                 if !(claim.force && reason.yields_to_force()) {
                     return Err(OutputError::InTheWay {
                         folder: folder.to_owned(),
@@ -128,7 +128,7 @@ impl OwnedFolder {
             Some(Reason::Folder) => {
                 let found = Marker::read(&path).map_err(failed(&path, READING))?;
                 match found {
-                    Found::Own(_) => State::Own,
+                    ListState::Own(_) => State::Own,
                     _ => State::InTheWay(Reason::Folder),
                 }
             }
@@ -308,7 +308,9 @@ impl OwnedFolder {
     /// If it cannot be written.
     pub fn compact(&mut self) -> Result<(), OutputError> {
         let list = self.folder.join(MARKER);
-        if let Found::Own(marker) = Marker::read(&self.folder).map_err(failed(&list, READING))? {
+        if let ListState::Own(marker) =
+            Marker::read(&self.folder).map_err(failed(&list, READING))?
+        {
             self.marker = marker;
         }
         for (name, is_written) in std::mem::take(&mut self.changed) {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::row::Cell;
+use std::slice::from_ref;
 
 pub(crate) fn identity(runs: u64, sha256: &str) -> Identity {
     Identity {
@@ -263,15 +264,15 @@ fn what_is_foreign_stays() {
 fn a_trace_of_somebody_else_is_in_the_way_with_force_alone_replaced() {
     let home = tempfile::tempdir().unwrap();
     let store = create(home.path(), "1/1").unwrap();
-    store.traces(&[0..10]).unwrap();
+    store.traces(from_ref(&(0..10))).unwrap();
     drop(store);
     let traces = home.path().join("traces");
     for name in ["0000000003.csv", "3.csv", "mine.csv"] {
         fs::write(traces.join(name), "mine").unwrap();
     }
     let store = create(home.path(), "1/1").unwrap();
-    store.traces(&[4..10]).unwrap();
-    let text = store.traces(&[0..10]).unwrap_err().to_string();
+    store.traces(from_ref(&(4..10))).unwrap();
+    let text = store.traces(from_ref(&(0..10))).unwrap_err().to_string();
     assert!(text.contains("0000000003.csv (not written"), "{text}");
     drop(store);
     // Another sweep takes its place, and nothing of theirs.
