@@ -157,6 +157,14 @@ fn a_blind_lesson_from_plan_to_report() {
 }
 
 fn check_files(folder: &SessionFolder, session: &Session) {
+    // They hold what students have answered.
+    #[cfg(unix)]
+    for entry in fs::read_dir(folder.path()).unwrap() {
+        use std::os::unix::fs::PermissionsExt;
+        let entry = entry.unwrap();
+        let mode = entry.metadata().unwrap().permissions().mode();
+        assert_eq!(mode & 0o077, 0, "{}: {mode:o}", entry.path().display());
+    }
     let mut answers = csv::Reader::from_path(folder.path().join("answers.csv")).unwrap();
     let rows: Vec<_> = answers.records().map(Result::unwrap).collect();
     assert_eq!(rows.len(), 12);
