@@ -71,7 +71,15 @@ fn effects_are_timed_when_that_is_asked_for() {
     for (name, more) in [("trace", None), ("alone", Some("--no-trace"))] {
         let out = home.path().join(name);
         let out = out.to_str().unwrap();
-        let short = ["run", "encoder", "--set", "duration_s=0.2", "--costs", "--out", out];
+        let short = [
+            "run",
+            "encoder",
+            "--set",
+            "duration_s=0.2",
+            "--costs",
+            "--out",
+            out,
+        ];
         let arguments: Vec<_> = short.into_iter().chain(more).collect();
         let output = run(&arguments);
         assert!(output.status.success(), "{}", stderr(&output));
