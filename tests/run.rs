@@ -52,7 +52,10 @@ fn a_scene_becomes_four_files() {
     let summary = summary(&folder);
     assert_eq!(summary["events"]["break"], 64);
     assert_eq!(summary["effects"][0]["name"], "crepitus");
-    assert!(summary["effects"][0]["ns_per_step"].as_f64().unwrap() < 1e4);
+    // Nothing is timed that nobody asked for: absent, not zero.
+    for key in ["ns_per_step", "ns_resolution"] {
+        assert!(summary["effects"][0].get(key).is_none(), "{key}");
+    }
     assert_eq!(summary["convention"], "frozen");
 
     let report = fs::read_to_string(folder.join("report.html")).unwrap();
@@ -60,6 +63,34 @@ fn a_scene_becomes_four_files() {
     assert!(!report.contains("http://") && !report.contains("https://"));
     assert!(!report.contains("<script"));
     assert!(report.matches("<svg").count() >= 5);
+}
+
+#[test]
+fn effects_are_timed_when_that_is_asked_for() {
+    let home = tempfile::tempdir().unwrap();
+    for (name, more) in [("trace", None), ("alone", Some("--no-trace"))] {
+        let out = home.path().join(name);
+        let out = out.to_str().unwrap();
+        let short = [
+            "run",
+            "encoder",
+            "--set",
+            "duration_s=0.2",
+            "--costs",
+            "--out",
+            out,
+        ];
+        let arguments: Vec<_> = short.into_iter().chain(more).collect();
+        let output = run(&arguments);
+        assert!(output.status.success(), "{}", stderr(&output));
+        let summary = summary(&home.path().join(name));
+        for effect in summary["effects"].as_array().unwrap() {
+            assert!(effect["ns_resolution"].as_f64().unwrap() > 0.0, "{effect}");
+            assert!(effect.get("ns_per_step").is_some(), "{effect}");
+        }
+    }
+    let report = fs::read_to_string(home.path().join("trace/report.html")).unwrap();
+    assert!(report.contains("ns per step"));
 }
 
 #[test]

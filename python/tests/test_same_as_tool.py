@@ -96,7 +96,7 @@ def test_trace_events_and_summary_are_the_tools(
 
 
 def test_costs_are_measured_when_they_are_asked_for(tool: Tool, tmp_path: Path) -> None:
-    tool("run", "encoder", "--out", tmp_path / "out")
+    tool("run", "encoder", "--costs", "--out", tmp_path / "out")
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     run = crepitus.run("encoder", trace=False, costs=True)
     assert run.trace == {}

@@ -51,6 +51,10 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     force: Force,
 
+    /// Time each effect, and write its cost into summary and report.
+    #[arg(long)]
+    costs: bool,
+
     /// Write summary.json and events.csv alone: no trace, no report.
     #[arg(long, conflicts_with_all = ["Pictures", "Overlay", "Wav", "trace_every"])]
     no_trace: bool,
@@ -174,11 +178,13 @@ fn failure(scene: &Scene, out: &Path, error: RunError<WatchError>) -> Failure {
     }
 }
 
-fn with_commit(summary: Summary) -> Summary {
-    Summary {
-        crepitus_commit: option_env!("CREPITUS_COMMIT"),
-        ..summary
+/// Adds to a run's summary the program's commit and, if asked for, the costs of its effects.
+fn completed(mut summary: Summary, scene: &Scene, arguments: &Arguments) -> Summary {
+    summary.crepitus_commit = option_env!("CREPITUS_COMMIT");
+    if arguments.costs {
+        runner::measure_costs(scene, &mut summary);
     }
+    summary
 }
 
 /// Runs the scene and writes its files; returns where they are, too.
@@ -205,7 +211,7 @@ fn simulate(
         let mut watch =
             watch::EventsAlone::new(&folder, scene.duration_s).map_err(|e| failed(&e))?;
         let summary = crepitus_scene::run(scene, &mut watch).map_err(failed_run)?;
-        let summary = with_commit(summary);
+        let summary = completed(summary, scene, arguments);
         watch.finish().map_err(|e| failed(&e))?;
         let files = vec![results::summary_file(&summary)?];
         let out = write(scene, folder, (wanted, out), files, arguments)?;
@@ -228,8 +234,7 @@ fn simulate(
     watch.compare(measured, &columns);
     watch.listen(listener);
     let summary = crepitus_scene::run(scene, &mut watch).map_err(failed_run)?;
-    let mut summary = with_commit(summary);
-    runner::measure_costs(scene, &mut summary);
+    let summary = completed(summary, scene, arguments);
     let listener = watch.listener();
     let mut figures = watch.finish().map_err(|e| failed(&e))?;
     if let Some(balance) = plant::balance(&summary) {
