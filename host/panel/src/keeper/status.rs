@@ -1,6 +1,7 @@
 //! The device's state as a message.
 
 use super::Keeper;
+use super::torque_end::TorqueEnd;
 use crepitus_client::Transport;
 use crepitus_protocol::host::Status;
 use serde_json::{Value, json};
@@ -64,6 +65,7 @@ impl<T: Transport> Keeper<'_, T> {
                 "seconds": recorded.seconds(),
             })),
             "message": self.message,
+            "torque_end": self.torque_end.as_ref().map(TorqueEnd::message),
             "speed_of_time": self.speed.factor(self.client.now()),
         });
         if let Some(accounting) = self.client.accounting() {
