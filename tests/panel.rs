@@ -5,6 +5,8 @@
 #[path = "support/panel.rs"]
 mod page;
 mod support;
+#[path = "support/tunnel.rs"]
+mod tunnel;
 
 use page::{Page, Panel};
 use serde_json::{Value, json};
@@ -13,6 +15,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use support::served::{Served, signal};
 use support::{names, run, stderr};
+use tunnel::Tunnel;
 
 const SIM: [&str; 2] = ["--device", "sim"];
 
@@ -179,6 +182,42 @@ fn torque_ends_with_the_page() {
     assert!(page.ask("arm", json!({})).is_err());
     page.go_on(Duration::from_millis(300));
     page.ask("take", json!({})).unwrap();
+    page.arm();
+}
+
+/// Through a tunnel that hangs, torque ends; what was ordered into it arrives late and is not
+/// carried out, but a stop is.
+#[test]
+fn an_order_that_a_tunnel_has_delayed_is_rejected() {
+    let panel = Panel::new(&SIM);
+    let tunnel = Tunnel::to(&panel.host);
+    let mut viewer = panel.viewer_page();
+    let (_, token) = panel.teacher.split_once('#').unwrap();
+    let mut page = Page::through(&tunnel.host, &panel.host, token);
+    page.until("its first frame", |page| page.newest().is_some());
+    page.ask("take", json!({})).unwrap();
+    page.arm();
+    viewer.until_state("armed");
+    tunnel.hang(true);
+    let took = until_off(&mut viewer);
+    assert!(took < Duration::from_millis(600), "{took:?}");
+    let cause = &viewer.status("torque_end")["cause"];
+    assert_eq!(cause, "watchdog");
+    let newest = page.newest();
+    for (id, what) in [(901, "arm"), (902, "reset"), (903, "stop"), (904, "arm")] {
+        page.send(&json!({ "id": id, "do": what, "newest": newest }).to_string());
+    }
+    viewer.go_on(Duration::from_millis(1_500));
+    tunnel.hang(false);
+    for (id, is_done) in [(901, false), (902, false), (903, true), (904, false)] {
+        let reply = page.reply(id);
+        let error = reply["error"].as_str().unwrap_or_default();
+        assert_eq!(error.contains("s late"), !is_done, "{id}: {reply}");
+    }
+    viewer.go_on(Duration::from_millis(300));
+    assert_eq!(viewer.status("state"), "disarmed");
+    // When the connection is back, so is the page.
+    page.go_on(Duration::from_millis(300));
     page.arm();
 }
 

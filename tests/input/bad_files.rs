@@ -318,7 +318,7 @@ fn bad_files(folder: &Path) -> UnixListener {
         .set_len(1 << 40)
         .unwrap();
     fs::write(at("forbidden"), "of no use").unwrap();
-    fs::set_permissions(at("forbidden"), fs::Permissions::from_mode(0)).unwrap();
+    fs::set_permissions(at("forbidden"), fs::Permissions::from_mode(0o000)).unwrap();
     symlink("nothing", at("dangling")).unwrap();
     UnixListener::bind(at("socket")).unwrap()
 }

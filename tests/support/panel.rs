@@ -83,7 +83,8 @@ impl Panel {
         page.until("the first messages", |page| {
             let has = |name: &str| page.latest.contains_key(name);
             let is_replay = has("hello") && page.latest["hello"]["source"]["kind"] == "replay";
-            has("status") && has("holder") && (is_replay || has("lesson"))
+            let is_live = page.newest().is_some() && has("lesson");
+            has("status") && has("holder") && (is_replay || is_live)
         });
         page
     }
@@ -173,6 +174,7 @@ pub(crate) struct Page {
     replies: HashMap<u64, Value>,
     traces: HashMap<u32, Frame>,
     next: u32,
+    newest: Option<u32>,
     /// Whether it answers frames.
     pub(crate) answers: bool,
     pub(crate) is_closed: bool,
@@ -181,10 +183,19 @@ pub(crate) struct Page {
 impl Page {
     /// Connects and says this token, or nothing.
     pub(crate) fn open(host: &str, token: Option<&str>) -> Self {
+        Self::connected(host, host, token)
+    }
+
+    /// Connects through a tunnel at another address.
+    pub(crate) fn through(tunnel: &str, host: &str, token: &str) -> Self {
+        Self::connected(tunnel, host, Some(token))
+    }
+
+    fn connected(address: &str, host: &str, token: Option<&str>) -> Self {
         let mut request = format!("ws://{host}/ws").into_client_request().unwrap();
         let origin = format!("http://{host}").parse().unwrap();
         request.headers_mut().insert("origin", origin);
-        let stream = TcpStream::connect(host).unwrap();
+        let stream = TcpStream::connect(address).unwrap();
         let (mut socket, _) = tungstenite::client(request, stream).unwrap();
         (socket.get_mut())
             .set_read_timeout(Some(Duration::from_millis(2)))
@@ -202,6 +213,7 @@ impl Page {
             replies: HashMap::new(),
             traces: HashMap::new(),
             next: 0,
+            newest: None,
             answers: true,
             is_closed: false,
         }
@@ -220,6 +232,7 @@ impl Page {
                     let seen = json!({ "seen": frame.number }).to_string();
                     let _ = self.socket.send(Message::text(seen));
                 }
+                self.newest = Some(frame.number);
                 self.frames.push(frame);
             }
             Ok(Message::Text(text)) => {
@@ -275,6 +288,9 @@ impl Page {
         self.next += 1;
         let id = self.next;
         more["id"] = json!(id);
+        if more.get("newest").is_none() {
+            more["newest"] = json!(self.newest());
+        }
         more["do"] = json!(what);
         self.send(&more.to_string());
         self.until(&format!("the reply to {what}"), |page| {
@@ -289,12 +305,23 @@ impl Page {
         }
     }
 
+    /// The reply to a request that was sent.
+    pub(crate) fn reply(&mut self, id: u64) -> Value {
+        self.until("a reply", |page| page.replies.contains_key(&id));
+        self.replies.remove(&id).unwrap_or_default()
+    }
+
     /// The bins of a recording.
     pub(crate) fn trace(&mut self, recording: u64, from_s: f64, to_s: f64, points: u16) -> Frame {
         let request =
             json!({ "recording": recording, "from_s": from_s, "to_s": to_s, "points": points });
         self.ask("trace", request).unwrap();
         self.traces.remove(&self.next).expect("a trace")
+    }
+
+    /// Number of the newest frame, which requests carry.
+    pub(crate) fn newest(&self) -> Option<u32> {
+        self.newest
     }
 
     pub(crate) fn send(&mut self, text: &str) {

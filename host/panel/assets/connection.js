@@ -1,16 +1,31 @@
 // The one WebSocket to the server: token, requests and their replies, live
 // frames. Everything else of the page listens here.
 
+import { storedToken, storeToken } from "./storage.js";
+
 const KIND_TRACE = 2;
+// The server sends something every 100 ms. Without a message for so long the page no longer
+// knows what the device does.
+const SILENT_AFTER_MS = 400;
+// A connection that hangs may never end by itself: after so long a new one is tried.
+const ABANDON_AFTER_MS = 4000;
+const LOOK_EVERY_MS = 50;
 const listeners = new Map();
 const waiting = new Map();
 let socket = null;
 let serial = 0;
+let newest;
+let heardAt = 0;
+let lookedAt = 0;
+let isSilent = false;
 
 /** The last message of each kind; a page that renders later finds it here. */
 export const latest = {};
 
-/** Calls this at each message of a kind, and at `open`, `lost`, `refused`, `frame`. */
+/**
+ * Calls this at each message of a kind, and at `open`, `lost`, `refused`, `frame`; at `silent`, with the seconds,
+ * while nothing arrives; at `heard` when something does again.
+ */
 export function on(kind, listener) {
   if (!listeners.has(kind)) listeners.set(kind, []);
   listeners.get(kind).push(listener);
@@ -33,7 +48,8 @@ export function ask(what, more = {}) {
     if (socket?.readyState !== WebSocket.OPEN) return reject(new Error("not-connected"));
     const id = ++serial;
     waiting.set(id, { resolve, reject });
-    socket.send(JSON.stringify({ id, do: what, ...more }));
+    // The newest frame says how old this request is when it arrives.
+    socket.send(JSON.stringify({ id, do: what, newest, ...more }));
   });
 }
 
@@ -51,6 +67,7 @@ function receiveFrame(data) {
   const id = view.getUint32(4, true);
   if (view.getUint8(1) === KIND_TRACE) return settle(id, "resolve", view);
   socket.send(`{"seen":${id}}`);
+  newest = id;
   emit("frame", view);
 }
 
@@ -66,31 +83,77 @@ function receiveText(message) {
   }
 }
 
+function heard() {
+  heardAt = performance.now();
+  if (!isSilent) return;
+  isSilent = false;
+  emit("heard");
+}
+
+// While this page itself was busy, messages wait behind this timer: they have their turn first.
+function lookForSilence() {
+  const now = performance.now();
+  const wasBusy = now - lookedAt > 4 * LOOK_EVERY_MS;
+  lookedAt = now;
+  if (wasBusy || !socket || latest.refused) return;
+  const silent = now - heardAt;
+  if (silent >= ABANDON_AFTER_MS) return abandon();
+  if (socket.readyState !== WebSocket.OPEN || silent < SILENT_AFTER_MS) return;
+  isSilent = true;
+  emit("silent", silent / 1000);
+}
+
+// What was sent may still arrive: the server does not carry out what is too old, but a stop.
+function abandon() {
+  socket.onopen = socket.onmessage = socket.onclose = null;
+  socket.close();
+  lose();
+}
+
+function lose() {
+  socket = null;
+  isSilent = false;
+  for (const id of [...waiting.keys()]) settle(id, "reject", new Error("not-connected"));
+  if (latest.refused) return;
+  latest.holder = { taken: false, yours: false };
+  emit("holder", latest.holder);
+  emit("lost");
+  setTimeout(open, 1000);
+}
+
 function open() {
+  newest = undefined;
+  heardAt = performance.now();
   socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`);
   socket.binaryType = "arraybuffer";
   socket.onopen = () => {
-    socket.send(JSON.stringify({ token: sessionStorage.getItem("token") ?? "" }));
+    socket.send(JSON.stringify({ token: storedToken() }));
+    heardAt = performance.now();
     emit("open");
   };
-  socket.onmessage = ({ data }) =>
-    typeof data === "string" ? receiveText(JSON.parse(data)) : receiveFrame(data);
-  socket.onclose = () => {
-    for (const id of [...waiting.keys()]) settle(id, "reject", new Error("not-connected"));
-    if (latest.refused) return;
-    latest.holder = { taken: false, yours: false };
-    emit("holder", latest.holder);
-    emit("lost");
-    setTimeout(open, 1000);
+  socket.onmessage = ({ data }) => {
+    heard();
+    if (typeof data === "string") receiveText(JSON.parse(data));
+    else receiveFrame(data);
   };
+  socket.onclose = lose;
+}
+
+/** What is wrong with the key of a link that was refused: `none`, `cut` or `old`. */
+export function keyFault() {
+  const token = storedToken();
+  if (token === "") return "none";
+  return /^[0-9a-f]{32}$/.test(token) ? "old" : "cut";
 }
 
 /** Takes the token from the address and connects. */
 export function connect() {
   // The fragment reaches no server and no log; other ports cannot read this storage.
   if (location.hash.length > 1) {
-    sessionStorage.setItem("token", location.hash.slice(1));
-    history.replaceState(null, "", location.pathname);
+    // Where nothing can be stored, the address keeps it for a reload.
+    const isStored = storeToken(location.hash.slice(1));
+    if (isStored) history.replaceState(null, "", location.pathname);
   }
   open();
+  setInterval(lookForSilence, LOOK_EVERY_MS);
 }

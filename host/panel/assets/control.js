@@ -1,16 +1,18 @@
 // The header: state, who controls, control buttons with the reason why one is
 // disabled, stop, faults.
 
-import { ask, isController, isReplay, isTeacher, latest, on } from "./connection.js";
+import { ask, isController, isReplay, isTeacher, keyFault, latest, on } from "./connection.js";
 import { byId, el, setText } from "./dom.js";
 import { confirmed } from "./dialogs.js";
 import { request, say } from "./report.js";
-import { stop } from "./stop.js";
-import { onLanguage, text, textOr } from "./strings.js";
+import { startStop } from "./stop.js";
+import { number, onLanguage, text, textOr } from "./strings.js";
 import { kneeName } from "./names.js";
 
 let link = "connecting";
 let lastMessage = null;
+let silentFor = 0;
+let dismissed = 0;
 
 function stateName() {
   if (link !== "open") return link;
@@ -65,13 +67,13 @@ function showControls() {
   const holder = latest.holder;
   const who = isController() ? "holder.you" : holder?.taken ? "holder.other" : "holder.nobody";
   const other = latest.status?.other;
-  setText(byId("holder"), other ? text("holder.program", { name: other }) : text(who));
+  setText(byId("holder"), link !== "open" ? "–" : other ? text("holder.program", { name: other }) : text(who));
 }
 
 function showState() {
   const name = stateName();
   const chip = byId("state");
-  setText(chip, textOr(`device.state.${name}`, name));
+  setText(chip, textOr(`device.state.${name}`, name).replace("{seconds}", number(silentFor, 1)));
   chip.dataset.state = name;
   byId("stop").classList.toggle("live", name === "armed" || name === "arming");
   const source = latest.hello?.source;
@@ -143,17 +145,30 @@ function showMessage() {
   lastMessage = message;
 }
 
+// Until the next arming: a message that fades is not seen by somebody who looks at the leg.
+function showTorqueEnd() {
+  const end = latest.status?.torque_end;
+  const isShown = Boolean(end) && end.unix_ms !== dismissed;
+  byId("torque-end").hidden = !isShown;
+  if (!isShown) return;
+  const time = new Date(end.unix_ms).toLocaleTimeString(document.documentElement.lang);
+  const fault = latest.hello?.faults.find((entry) => entry.code === end.code)?.name ?? "";
+  const why = text(`ended.${end.cause}`, { code: end.code, fault, name: end.name });
+  setText(byId("torque-end-text"), text("ended", { time, why }));
+}
+
 function update() {
   showState();
+  showTorqueEnd();
   showFaults();
 }
 
 /** Starts the header. */
 export function startControl() {
-  byId("stop").addEventListener("click", stop);
-  // Captured at the window: no dialog, field or list keeps the key for itself.
-  addEventListener("keydown", (event) => event.key === "Escape" && !event.repeat && stop(), {
-    capture: true,
+  startStop();
+  byId("torque-end-dismiss").addEventListener("click", () => {
+    dismissed = latest.status?.torque_end?.unix_ms ?? 0;
+    showTorqueEnd();
   });
   byId("take").addEventListener("click", take);
   for (const name of ["zero", "arm", "disarm"]) byId(name).addEventListener("click", () => request(name));
@@ -165,10 +180,20 @@ export function startControl() {
     link = "connection-lost";
     update();
   });
+  on("silent", (seconds) => {
+    link = "silent";
+    // In halves of a second: it is read aloud, too.
+    silentFor = Math.max(0.5, Math.floor(seconds * 2) / 2);
+    update();
+  });
+  on("heard", () => {
+    link = "open";
+    update();
+  });
   on("refused", () => {
     link = "refused";
     update();
-    byId("faults").replaceChildren(el("div", { class: "fault" }, el("strong", null, text("refused"))));
+    byId("faults").replaceChildren(el("div", { class: "fault" }, el("strong", null, text(`refused.${keyFault()}`))));
   });
   for (const kind of ["hello", "status", "holder", "parameters", "presets", "lesson"]) on(kind, update);
   on("status", showMessage);

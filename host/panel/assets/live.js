@@ -7,11 +7,14 @@ import { isReplay, latest, on } from "./connection.js";
 import { byId, el, setText, tick } from "./dom.js";
 import { makeLeg } from "./leg.js";
 import { shadeName, shadesIn, shadesOf } from "./states.js";
+import { store, stored } from "./storage.js";
 import { number, onLanguage, text } from "./strings.js";
 
 const WINDOWS = [5, 10, 30];
 const BINS_A_SECOND = 200;
 const KEPT = 2000;
+// Numbers that are older than this are not shown: they would be taken for what is now.
+const STALE_AFTER_MS = 400;
 
 const stats = { frames: 0, bins: 0, paints: 0, missing: 0, first: null, latencies: [], draws: [] };
 window.crepitusStats = stats;
@@ -22,6 +25,8 @@ let turnLeg = null;
 let seconds = 10;
 let dirty = false;
 let wordsAt = 0;
+let binsAt = 0;
+let isStale = true;
 let shades = [];
 
 function keep(list, value) {
@@ -72,13 +77,14 @@ function showWords(now) {
   if (now - wordsAt < 200) return;
   wordsAt = now;
   const { columns, begin, end } = bins;
-  const last = end - 1;
+  // Older ones are still curves, but no numbers and no states.
+  const last = isStale ? begin - 1 : end - 1;
   const from = Math.max(begin, end - 20);
   let torque = NaN;
   let breaks = 0;
-  for (let i = Math.max(begin, end - BINS_A_SECOND); i < end; i++) breaks += columns.breaks[i];
+  for (let i = Math.max(begin, end - BINS_A_SECOND); i < end && !isStale; i++) breaks += columns.breaks[i];
   // The largest torque of the last tenth of a second, with its sign: a catch is short.
-  for (let i = from; i < end; i++) {
+  for (let i = from; i < end && !isStale; i++) {
     for (const value of [columns.torqueLow[i], columns.torqueHigh[i]]) {
       if (!(Math.abs(value) <= Math.abs(torque))) torque = Number.isNaN(value) ? torque : value;
     }
@@ -92,7 +98,7 @@ function showWords(now) {
     last < begin ? "–" : number(middle(columns.speedLow[last], columns.speedHigh[last])),
   );
   showSecret(byId("torque"), bins.masked.torque, number(torque, 2));
-  showSecret(byId("breaks"), bins.masked.states, number(breaks));
+  showSecret(byId("breaks"), bins.masked.states, isStale ? "–" : number(breaks));
   if (!legend) return;
   let present = 0;
   if (!bins.masked.states) {
@@ -108,6 +114,13 @@ function showWords(now) {
 function paint(now) {
   requestAnimationFrame(paint);
   stats.paints++;
+  const noBins = performance.now() - binsAt > STALE_AFTER_MS || latest.status?.link === "lost";
+  if (noBins !== isStale) {
+    isStale = noBins;
+    byId("live").classList.toggle("stale", isStale);
+    wordsAt = 0;
+    dirty = true;
+  }
   if (!dirty || isReplay()) return;
   dirty = false;
   const began = performance.now();
@@ -116,7 +129,7 @@ function paint(now) {
     const to = columns.t[end - 1] + bins.length / 2;
     charts.masked = bins.masked;
     charts.draw(to - seconds, to);
-    turnLeg(middle(columns.angleLow[end - 1], columns.angleHigh[end - 1]));
+    turnLeg(isStale ? NaN : middle(columns.angleLow[end - 1], columns.angleHigh[end - 1]));
   }
   showWords(now);
   const arrived = bins.arrived;
@@ -131,13 +144,13 @@ function paint(now) {
 
 function offerWindows() {
   const host = byId("window-choice");
-  const wish = Number(localStorage.getItem("window"));
+  const wish = Number(stored("window"));
   if (WINDOWS.includes(wish)) seconds = wish;
   const labels = WINDOWS.map((value) => {
     const input = el("input", { type: "radio", name: "window", value, checked: value === seconds });
     input.addEventListener("change", () => {
       seconds = value;
-      localStorage.setItem("window", value);
+      store("window", value);
       dirty = true;
     });
     return tick(`${value} s`, input);
@@ -148,6 +161,7 @@ function offerWindows() {
 function showCounters() {
   const status = latest.status;
   if (!status) return;
+  // A device that is lost has no supply and no temperature.
   const facts = [
     ["produced", number(status.produced)],
     ["received", number(status.received)],
@@ -193,6 +207,7 @@ export function startLive() {
     const { count, missing } = bins.push(view);
     stats.frames++;
     stats.bins += count;
+    if (count > 0) binsAt = performance.now();
     stats.missing += missing;
     dirty = true;
   });

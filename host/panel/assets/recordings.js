@@ -17,10 +17,10 @@ function size(bytes) {
   return bytes >= 1e6 ? `${number(bytes / 1e6, 1)} MB` : `${number(bytes / 1e3)} kB`;
 }
 
-function when(value) {
-  const date = new Date(value);
+function when(seconds) {
+  const date = new Date(Number.isFinite(seconds) && seconds > 0 ? seconds * 1000 : NaN);
   return Number.isNaN(date.getTime())
-    ? String(value ?? "")
+    ? ""
     : date.toLocaleString(document.documentElement.lang);
 }
 

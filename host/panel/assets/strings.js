@@ -1,5 +1,7 @@
 // Texts for people: one file a language, English where one lacks a text.
 
+import { store, stored } from "./storage.js";
+
 const LANGUAGES = { en: "English", de: "Deutsch" };
 const listeners = [];
 let english = {};
@@ -56,12 +58,12 @@ async function choose(name) {
 
 /** Loads the texts, and offers the languages in this `<select>`. */
 export async function startStrings(select) {
-  const wish = localStorage.getItem("language") ?? navigator.language.slice(0, 2);
+  const wish = stored("language") ?? navigator.language.slice(0, 2);
   const name = wish in LANGUAGES ? wish : "en";
   for (const [value, label] of Object.entries(LANGUAGES)) select.append(new Option(label, value));
   select.value = name;
   select.addEventListener("change", () => {
-    localStorage.setItem("language", select.value);
+    store("language", select.value);
     choose(select.value);
   });
   english = await load("en");

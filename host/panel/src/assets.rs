@@ -49,6 +49,7 @@ assets![
     SCRIPT "report.js",
     SCRIPT "states.js",
     SCRIPT "stop.js",
+    SCRIPT "storage.js",
     SCRIPT "strings.js",
     SCRIPT "tabs.js",
     SCRIPT "target.js",

@@ -6,6 +6,8 @@
 //! | part | look in |
 //! |---|---|
 //! | torque on and off, connection | `keeper.rs` |
+//! | whether an order is executed, control | `keeper/orders.rs` |
+//! | who ended torque, and when | `keeper/torque_end.rs` |
 //! | parameters and presets | `keeper/knee.rs` |
 //! | lessons | `keeper/lessons.rs` |
 //! | recordings | `keeper/recording.rs` |
@@ -13,10 +15,12 @@
 
 mod knee;
 mod lessons;
+mod orders;
 mod recording;
 mod status;
 #[cfg(test)]
 mod tests;
+mod torque_end;
 
 use crate::frame::{Header, Kind, Masks, frame};
 use crate::request::{AimAt, Request};
@@ -38,6 +42,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use torque_end::Torque;
 
 /// Samples of a bin, 5 ms.
 const ROWS_PER_BIN: u32 = TICKS_PER_S / 200;
@@ -125,6 +130,7 @@ pub(crate) struct Keeper<'p, T> {
     notes: Vec<Note>,
     /// Something that happened by itself.
     message: Option<String>,
+    torque: Torque,
     status_at: Instant,
     status_is_due: bool,
     is_lost: bool,
@@ -172,6 +178,7 @@ impl<'p, T: Transport> Keeper<'p, T> {
             hides: false,
             notes: Vec::new(),
             message: None,
+            torque: Torque::Off(None),
             status_at: now,
             status_is_due: true,
             is_lost: false,
@@ -217,23 +224,15 @@ impl<'p, T: Transport> Keeper<'p, T> {
 
     /// Orders, events, frames: some milliseconds.
     pub(crate) fn step(&mut self) {
-        while let Ok(Order { request, reply }) = self.inbox.try_recv() {
-            let outcome = self.execute(request);
-            self.status_is_due = true;
-            // The page may be gone.
-            let _ = reply.send(outcome);
-        }
-        if self.client.is_armed() && self.shared.watchdog.has_expired() {
-            self.disarm_by_itself(
-                "the controlling page has not answered for 200 ms: torque is off",
-            );
-        }
+        self.take_orders();
+        self.supervise_page();
         if self.is_lost {
             self.try_to_reconnect();
         } else {
             self.pump();
         }
         self.check_files();
+        self.notice_torque_end();
         if self.hides != self.is_hidden() {
             self.hides = !self.hides;
             self.publish_parameters();
@@ -245,14 +244,6 @@ impl<'p, T: Transport> Keeper<'p, T> {
         if self.status_is_due || self.status_at.elapsed() >= STATUS_EVERY {
             self.publish_status();
         }
-    }
-
-    fn disarm_by_itself(&mut self, why: &str) {
-        self.message = Some(match self.client.disarm() {
-            Ok(()) => why.to_owned(),
-            Err(error) => format!("{why}; {error}"),
-        });
-        self.status_is_due = true;
     }
 
     /// Takes what has come, for no longer than a poll waits: if the device sends faster than
@@ -382,14 +373,9 @@ impl<'p, T: Transport> Keeper<'p, T> {
 
     /// Executes a request of a page that may make it.
     fn execute(&mut self, request: Request) -> Outcome {
-        if self.is_lost && request.needs_device() {
-            return Err("the device is not connected: check the cable, then try again".to_owned());
-        }
         match request {
-            Request::Stop => self.done(Client::stop),
             Request::Zero => self.done(Client::zero),
             Request::Arm => self.arm(),
-            Request::Disarm => self.done(Client::disarm),
             Request::ClearFault => self.done(Client::clear_fault),
             Request::Save => self.done(Client::save),
             Request::Apply { preset, add } => self.apply(&preset, add),
@@ -412,9 +398,11 @@ impl<'p, T: Transport> Keeper<'p, T> {
             Request::LessonEnd { language } => self.end_lesson(&language),
             Request::LessonClose => self.close_lesson(),
             Request::Report { language } => self.report(&language),
-            // Of the server and the archive.
+            // Of the check of orders, the server and the archive.
             Request::Take
             | Request::Release
+            | Request::Stop
+            | Request::Disarm
             | Request::Fault { .. }
             | Request::Recordings
             | Request::Open { .. }
@@ -443,7 +431,9 @@ impl<'p, T: Transport> Keeper<'p, T> {
             );
         }
         self.message = None;
-        self.done(Client::arm)
+        self.done(Client::arm)?;
+        self.torque = Torque::On;
+        Ok(Value::Null)
     }
 
     fn set_target(&mut self, target: Option<AimAt>) -> Outcome {

@@ -16,6 +16,9 @@ pub(crate) enum Message {
     Request {
         /// The reply has it, too.
         id: u32,
+        /// Number of the newest frame that the page had when it was made.
+        #[serde(default)]
+        newest: Option<u32>,
         /// Requested action.
         #[serde(flatten)]
         request: Request,
@@ -184,6 +187,25 @@ impl Request {
         )
     }
 
+    /// Returns whether it must not be executed late: it can give torque, or change what is felt.
+    /// To end torque is never too late, and answers and notes are not lost.
+    pub(crate) fn expires(&self) -> bool {
+        matches!(
+            self,
+            Self::Take
+                | Self::Zero
+                | Self::Arm
+                | Self::ClearFault
+                | Self::Save
+                | Self::Apply { .. }
+                | Self::Set { .. }
+                | Self::Reset
+                | Self::LessonBegin(_)
+                | Self::LessonStart
+                | Self::LessonNext
+        )
+    }
+
     /// Pages that may make it.
     pub(crate) fn right(&self) -> Right {
         match self {
@@ -257,6 +279,22 @@ mod tests {
             r#"{"seen":-1}"#,
         ] {
             assert!(request(text).is_err(), "{text}");
+        }
+    }
+
+    /// Late, an order to end torque is harmless, and one that can give some is not.
+    #[test]
+    fn what_gives_torque_expires_and_what_ends_it_does_not() {
+        for request in [
+            Request::Arm,
+            Request::Take,
+            Request::Reset,
+            Request::LessonStart,
+        ] {
+            assert!(request.expires(), "{request:?}");
+        }
+        for request in [Request::Stop, Request::Disarm, Request::Release] {
+            assert!(!request.expires(), "{request:?}");
         }
     }
 

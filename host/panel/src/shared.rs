@@ -8,24 +8,30 @@
 //! ```
 
 use crate::archive::Question;
-use crate::control::Control;
+use crate::control::{Control, Page};
 use crate::request::Request;
 use crate::tickets::Tickets;
-use crate::tokens::Tokens;
+use crate::tokens::{Role, Tokens};
 use crate::watchdog::PageWatchdog;
 use axum::body::Bytes;
 use axum::extract::ws::Utf8Bytes;
 use serde_json::Value;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, mpsc};
+use std::time::Instant;
 use tokio::sync::{broadcast, oneshot, watch};
 
 /// Result of a request: the reply's content, or a text for people.
 pub(crate) type Outcome = Result<Value, String>;
 
-/// A request for the keeper, and where its outcome goes.
+/// A request for the device thread, the page that makes it, and where its outcome goes.
+///
+/// The right to make it is checked when it is executed: until then the page may lose control.
 pub(crate) struct Order {
     pub(crate) request: Request,
+    pub(crate) page: Page,
+    pub(crate) role: Role,
+    pub(crate) queued_at: Instant,
     pub(crate) reply: oneshot::Sender<Outcome>,
 }
 
@@ -94,13 +100,42 @@ impl Shared {
         }
     }
 
-    /// Has the keeper execute a request.
-    pub(crate) async fn order(&self, request: Request) -> Outcome {
-        let gone = || "the panel is closing".to_owned();
+    /// Queues a request of a page for the device thread; returns the receiver of its outcome.
+    pub(crate) fn order(
+        &self,
+        request: Request,
+        page: Page,
+        role: Role,
+    ) -> Result<oneshot::Receiver<Outcome>, String> {
+        if request == Request::Take {
+            // At once: what the page before still orders is rejected from now on.
+            self.control.withdraw_for(page);
+        }
         let (reply, outcome) = oneshot::channel();
-        self.orders
-            .send(Order { request, reply })
-            .map_err(|_| gone())?;
-        outcome.await.map_err(|_| gone())?
+        let order = Order {
+            request,
+            page,
+            role,
+            queued_at: Instant::now(),
+            reply,
+        };
+        self.orders.send(order).map_err(|_| gone())?;
+        Ok(outcome)
     }
+
+    /// Takes control away from a page that has gone or gives it up, and queues the end of its
+    /// torque. Also for a page without control: its request to take it may still be queued.
+    pub(crate) fn leave(
+        &self,
+        page: Page,
+        role: Role,
+    ) -> Result<oneshot::Receiver<Outcome>, String> {
+        self.control.release(page);
+        self.order(Request::Release, page, role)
+    }
+}
+
+/// Text for requests to a panel that is closing.
+pub(crate) fn gone() -> String {
+    "the panel is closing".to_owned()
 }

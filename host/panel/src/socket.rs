@@ -5,9 +5,9 @@
 
 use crate::archive::{Asked, Found, Question};
 use crate::book;
-use crate::control::Page;
+use crate::control::{Holder, Page};
 use crate::request::{Message as FromPage, Request, Right};
-use crate::shared::{Latest, Outcome, Shared};
+use crate::shared::{Latest, Outcome, Shared, gone};
 use crate::tokens::Role;
 use axum::extract::ws::{Message, Utf8Bytes, WebSocket};
 use futures_util::stream::{SplitSink, SplitStream};
@@ -18,7 +18,8 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::{mpsc, oneshot};
-use tokio::time::timeout;
+use tokio::task::JoinSet;
+use tokio::time::{sleep, timeout};
 
 /// Longest time until a page has said its token.
 const TOKEN_TIMEOUT: Duration = Duration::from_secs(2);
@@ -26,8 +27,19 @@ const TOKEN_TIMEOUT: Duration = Duration::from_secs(2);
 /// A page that takes nothing for so long is disconnected.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
+/// Longest time without a message to a page: it blanks what it shows after 0.4 s of silence,
+/// also where the device keeps its thread too busy to make frames.
+const BEAT_EVERY: Duration = Duration::from_millis(100);
+
 /// Replies that wait to be written.
 const REPLIES: usize = 64;
+
+/// Requests of a page that wait for their outcome; more are read later.
+const PENDING: usize = 32;
+
+/// Longest delay of a request on its way here: what gives torque or changes the knee is
+/// rejected after a longer one, as the person who asked for it may have turned away since.
+const EXPIRES_AFTER: Duration = Duration::from_secs(1);
 
 type Sink = SplitSink<WebSocket, Message>;
 
@@ -62,7 +74,8 @@ pub(crate) async fn talk(socket: WebSocket, shared: Arc<Shared>) {
         () = reader => {}
         () = writer => {}
     }
-    leave(page, &shared).await;
+    // The page has gone: torque ends without waiting for the watchdog.
+    let _ = shared.leave(page, role);
 }
 
 /// The role of the token that the page says first.
@@ -70,14 +83,6 @@ async fn role(stream: &mut SplitStream<WebSocket>, shared: &Shared) -> Option<Ro
     let message = timeout(TOKEN_TIMEOUT, stream.next()).await.ok()??.ok()?;
     let first: First = serde_json::from_str(message.to_text().ok()?).ok()?;
     shared.tokens.role(&first.token)
-}
-
-/// The page has gone: torque ends without waiting for the watchdog.
-async fn leave(page: Page, shared: &Shared) {
-    if shared.control.release(page) {
-        shared.watchdog.revoke();
-        let _ = shared.order(Request::Disarm).await;
-    }
 }
 
 async fn write(mut sink: Sink, page: Page, shared: &Shared, mut replies: mpsc::Receiver<Message>) {
@@ -101,8 +106,8 @@ async fn write(mut sink: Sink, page: Page, shared: &Shared, mut replies: mpsc::R
                 }
                 let holder = *control.borrow_and_update();
                 vec![text(&json!({ "holder": {
-                    "taken": holder.is_some(),
-                    "yours": holder == Some(page),
+                    "taken": holder != Holder::Nobody,
+                    "yours": holder == Holder::Page(page),
                 } }))]
             }
             changed = latest.changed() => {
@@ -120,6 +125,7 @@ async fn write(mut sink: Sink, page: Page, shared: &Shared, mut replies: mpsc::R
                 Err(RecvError::Lagged(_)) => continue,
                 Err(RecvError::Closed) => return,
             },
+            () = sleep(BEAT_EVERY) => vec![text(&json!({ "beat": Value::Null }))],
         };
         for message in messages {
             if send(&mut sink, message).await.is_err() {
@@ -146,13 +152,18 @@ async fn send(sink: &mut Sink, message: Message) -> Result<(), ()> {
     }
 }
 
+/// Reads what a page sends. Requests are queued in the order in which they come, and no
+/// request waits for the outcome of the one before: a stop does not wait for a recording that
+/// is being read.
 async fn read(
     mut stream: SplitStream<WebSocket>,
     page: Page,
     role: Role,
-    shared: &Shared,
+    shared: &Arc<Shared>,
     replies: mpsc::Sender<Message>,
 ) {
+    // Ends with this function: a page that has gone reads no replies.
+    let mut pending = JoinSet::new();
     while let Some(Ok(message)) = stream.next().await {
         let Message::Text(message) = message else {
             if matches!(message, Message::Close(_)) {
@@ -162,17 +173,23 @@ async fn read(
         };
         match serde_json::from_str(&message) {
             Ok(FromPage::Seen { seen }) => {
-                if shared.control.holder() == Some(page) {
+                if shared.control.is_held_by(page) {
                     shared.watchdog.answered(seen);
                 }
             }
-            Ok(FromPage::Request { id, request }) => {
-                let reply = match trace_of(id, &request) {
-                    Some(asked) if role == Role::Teacher => trace(id, asked, shared).await,
-                    _ => reply(id, &execute(request, page, role, shared).await),
-                };
-                // Full if the page reads no replies: it waits for its own.
-                if replies.send(reply).await.is_err() {
+            Ok(FromPage::Request {
+                id,
+                newest,
+                request,
+            }) => {
+                let answer = begin(request, (id, newest), (page, role), shared);
+                let replies = replies.clone();
+                // Full if the page reads no replies: the task waits, and the page for it.
+                pending.spawn(async move { replies.send(answer.message(id).await).await });
+                while pending.try_join_next().is_some() {}
+                if pending.len() >= PENDING
+                    && !matches!(pending.join_next().await, Some(Ok(Ok(()))))
+                {
                     return;
                 }
             }
@@ -191,85 +208,101 @@ async fn read(
     }
 }
 
-/// Executes a request, if this page may make it.
-async fn execute(request: Request, page: Page, role: Role, shared: &Shared) -> Outcome {
-    let right = request.right();
-    if right != Right::Anybody && role != Role::Teacher {
-        return Err(
+/// Answer to a request, which may still be worked on.
+enum Answer {
+    Known(Outcome),
+    Ordered(oneshot::Receiver<Outcome>),
+    Asked(oneshot::Receiver<Result<Found, String>>),
+}
+
+impl Answer {
+    async fn message(self, id: u32) -> Message {
+        let outcome = match self {
+            Self::Known(outcome) => outcome,
+            Self::Ordered(outcome) => outcome.await.unwrap_or_else(|_| Err(gone())),
+            Self::Asked(found) => match found.await.unwrap_or_else(|_| Err(gone())) {
+                Ok(Found::Trace(frame)) => return Message::Binary(frame),
+                Ok(Found::Facts(facts)) => Ok(facts),
+                Err(error) => Err(error),
+            },
+        };
+        reply(id, &outcome)
+    }
+}
+
+/// Begins a request, if this link may make it and it is not too old. Control is checked by
+/// the device thread, when the request is executed.
+fn begin(
+    request: Request,
+    (id, newest): (u32, Option<u32>),
+    (page, role): (Page, Role),
+    shared: &Shared,
+) -> Answer {
+    if request.right() != Right::Anybody && role != Role::Teacher {
+        return Answer::Known(Err(
             "this link is for looking on: the teacher's link is needed for that".to_owned(),
-        );
+        ));
     }
-    if right == Right::Control && shared.control.holder() != Some(page) {
-        return Err("another page has control: take control first".to_owned());
+    if request.expires()
+        && let Err(error) = check_age(newest, shared)
+    {
+        return Answer::Known(Err(error));
     }
-    match request {
-        Request::Take => take(page, shared).await,
-        Request::Release => {
-            leave(page, shared).await;
-            Ok(Value::Null)
-        }
-        Request::Fault { code } => {
-            book::fault(code).ok_or_else(|| format!("there is no fault {code}"))
-        }
-        Request::Recordings => ask(Asked::List, shared).await,
-        Request::Open { recording } => ask(Asked::Open { recording }, shared).await,
-        request => shared.order(request).await,
-    }
-}
-
-/// Gives control to a page; the arming by another page is not inherited.
-async fn take(page: Page, shared: &Shared) -> Outcome {
-    let before = shared.control.holder();
-    if before.is_some_and(|holder| holder != page) {
-        shared.watchdog.revoke();
-        // Without a connection there is no torque.
-        let _ = shared.order(Request::Disarm).await;
-    }
-    shared.control.take(page);
-    shared.watchdog.begin();
-    Ok(Value::Null)
-}
-
-async fn ask(what: Asked, shared: &Shared) -> Outcome {
-    match question(what, shared).await? {
-        Found::Facts(facts) => Ok(facts),
-        Found::Trace(_) => Err("the answer is no text".to_owned()),
-    }
-}
-
-async fn question(what: Asked, shared: &Shared) -> Result<Found, String> {
-    let gone = || "the panel is closing".to_owned();
-    let (reply, found) = oneshot::channel();
-    let question = Question { what, reply };
-    shared.questions.send(question).map_err(|_| gone())?;
-    found.await.map_err(|_| gone())?
-}
-
-/// The question of a request for a trace.
-fn trace_of(id: u32, request: &Request) -> Option<Asked> {
-    match *request {
+    let begun = match request {
+        Request::Release => shared.leave(page, role).map(Answer::Ordered),
+        Request::Fault { code } => book::fault(code)
+            .ok_or_else(|| format!("there is no fault {code}"))
+            .map(|page| Answer::Known(Ok(page))),
+        Request::Recordings => question(Asked::List, shared),
+        Request::Open { recording } => question(Asked::Open { recording }, shared),
         Request::Trace {
             recording,
             from_s,
             to_s,
             points,
-        } => Some(Asked::Trace {
-            id,
-            recording,
-            from_s,
-            to_s,
-            points,
-        }),
-        _ => None,
+        } => {
+            let what = Asked::Trace {
+                id,
+                recording,
+                from_s,
+                to_s,
+                points,
+            };
+            question(what, shared)
+        }
+        request => shared.order(request, page, role).map(Answer::Ordered),
+    };
+    begun.unwrap_or_else(|error| Answer::Known(Err(error)))
+}
+
+/// Rejects a request that was delayed on its way.
+fn check_age(newest: Option<u32>, shared: &Shared) -> Result<(), String> {
+    let Some(newest) = newest else {
+        return Err(
+            "the request does not say which live frame its page had: reload the page, and wait \
+             for the curves"
+                .to_owned(),
+        );
+    };
+    match shared.watchdog.age(newest) {
+        Some(age) if age <= EXPIRES_AFTER => Ok(()),
+        Some(age) => Err(expired(&format!("{:.1} s", age.as_secs_f64()))),
+        None => Err(expired("several seconds")),
     }
 }
 
-async fn trace(id: u32, asked: Asked, shared: &Shared) -> Message {
-    match question(asked, shared).await {
-        Ok(Found::Trace(frame)) => Message::Binary(frame),
-        Ok(Found::Facts(facts)) => reply(id, &Ok(facts)),
-        Err(error) => reply(id, &Err(error)),
-    }
+fn expired(late: &str) -> String {
+    format!(
+        "the request arrived {late} late, so it was not carried out: the connection hangs. Look \
+         at the device, then try again"
+    )
+}
+
+fn question(what: Asked, shared: &Shared) -> Result<Answer, String> {
+    let (reply, found) = oneshot::channel();
+    let question = Question { what, reply };
+    shared.questions.send(question).map_err(|_| gone())?;
+    Ok(Answer::Asked(found))
 }
 
 fn reply(id: u32, outcome: &Outcome) -> Message {

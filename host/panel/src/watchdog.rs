@@ -4,7 +4,7 @@
 //! renews: without an answer for [`TIMEOUT`] it disarms. So neither a page that hangs nor
 //! a server that hangs keeps torque on; if that thread hangs, the lease expires.
 
-use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Longest time without an answer.
@@ -21,7 +21,6 @@ const FRAMES: usize = 256;
 #[derive(Debug)]
 pub(crate) struct PageWatchdog {
     begun: Instant,
-    is_controlled: AtomicBool,
     /// Time at which the oldest frame without an answer was made, ms.
     waiting_ms: AtomicU64,
     /// Number of the last frame.
@@ -34,7 +33,6 @@ impl PageWatchdog {
     pub(crate) fn new() -> Self {
         Self {
             begun: Instant::now(),
-            is_controlled: AtomicBool::new(false),
             waiting_ms: AtomicU64::new(NEVER),
             latest: AtomicU32::new(0),
             made_ms: [const { AtomicU64::new(NEVER) }; FRAMES],
@@ -75,20 +73,30 @@ impl PageWatchdog {
     /// A page has taken control.
     pub(crate) fn begin(&self) {
         self.waiting_ms.store(NEVER, Ordering::Relaxed);
-        self.is_controlled.store(true, Ordering::Relaxed);
     }
 
-    /// No page controls the device any more.
-    pub(crate) fn revoke(&self) {
-        self.is_controlled.store(false, Ordering::Relaxed);
-    }
-
-    /// Returns whether torque must end.
+    /// Returns whether an answer is missing for so long that torque must end.
     pub(crate) fn has_expired(&self) -> bool {
         let waiting_ms = self.waiting_ms.load(Ordering::Relaxed);
-        let is_late =
-            waiting_ms != NEVER && self.now_ms().saturating_sub(waiting_ms) > timeout_ms();
-        is_late || !self.is_controlled.load(Ordering::Relaxed)
+        waiting_ms != NEVER && self.now_ms().saturating_sub(waiting_ms) > timeout_ms()
+    }
+
+    /// Age of a request whose page had seen this frame when it was made: the time since the
+    /// next frame was made, which the page had not seen. Zero if there is no later frame; none
+    /// if the frame is too old to be known, or does not exist.
+    ///
+    /// No clock of the page is needed: frames are the clock.
+    pub(crate) fn age(&self, newest: u32) -> Option<Duration> {
+        let behind = self.latest.load(Ordering::Relaxed).wrapping_sub(newest);
+        match usize::try_from(behind) {
+            Ok(0) => Some(Duration::ZERO),
+            Ok(1..FRAMES) => {
+                let made_ms = self.place(newest.wrapping_add(1))?.load(Ordering::Relaxed);
+                let age_ms = self.now_ms().saturating_sub(made_ms);
+                (made_ms != NEVER).then_some(Duration::from_millis(age_ms))
+            }
+            _ => None,
+        }
     }
 
     fn place(&self, number: u32) -> Option<&AtomicU64> {
@@ -113,7 +121,6 @@ mod tests {
     #[test]
     fn it_expires_without_answers() {
         let watchdog = PageWatchdog::new();
-        assert!(watchdog.has_expired(), "nobody controls it");
         watchdog.begin();
         watchdog.made(1);
         assert!(!watchdog.has_expired());
@@ -155,12 +162,24 @@ mod tests {
     }
 
     #[test]
-    fn a_page_that_is_gone_does_not_answer() {
+    fn the_age_of_a_request_is_that_of_the_first_frame_that_its_page_missed() {
         let watchdog = PageWatchdog::new();
-        watchdog.begin();
         watchdog.made(1);
-        watchdog.revoke();
-        watchdog.answered(1);
-        assert!(watchdog.has_expired());
+        sleep(Duration::from_millis(50));
+        // While no frame is made, none is missed.
+        assert_eq!(watchdog.age(1), Some(Duration::ZERO));
+        watchdog.made(2);
+        assert!(watchdog.age(1) < Some(Duration::from_millis(40)));
+        sleep(Duration::from_millis(50));
+        watchdog.made(3);
+        assert!(watchdog.age(1) >= Some(Duration::from_millis(50)));
+        assert_eq!(watchdog.age(3), Some(Duration::ZERO));
+        // Frames that do not exist, and frames long ago.
+        assert_eq!(watchdog.age(4), None);
+        for number in 4..=400 {
+            watchdog.made(number);
+        }
+        assert_eq!(watchdog.age(3), None);
+        assert!(watchdog.age(300).is_some());
     }
 }

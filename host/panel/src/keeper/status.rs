@@ -64,6 +64,7 @@ impl<T: Transport> Keeper<'_, T> {
                 "seconds": recorded.seconds(),
             })),
             "message": self.message,
+            "torque_end": self.torque.end(),
             "speed_of_time": self.speed.factor(self.client.now()),
         });
         if let Some(accounting) = self.client.accounting() {

@@ -1,18 +1,24 @@
 use super::{Keeper, Program};
-use crate::shared::Shared;
-use crate::tokens::Tokens;
+use crate::control::{Holder, Page};
+use crate::request::Request as FromPage;
+use crate::shared::{Outcome, Shared};
+use crate::tokens::{Role, Tokens};
 use crepitus_client::{Client, Error, Transport, TransportError};
 use crepitus_connection::Simulated;
 use crepitus_protocol::host::{Operation, Request};
-use crepitus_protocol::{Decoder, Lane, Session};
+use crepitus_protocol::{Decoder, Lane, Session, State};
 use crepitus_scene::preset::Preset;
 use crepitus_scene::{Overrides, shipped};
 use serde_json::Value;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Arc, mpsc};
+use std::sync::{Arc, Mutex, mpsc};
 use std::time::Duration;
+use tokio::sync::oneshot::Receiver;
+
+/// Delay of the answer to a disarm that is slow: less than the timeout of a request.
+const SLOW_DISARM_MS: u32 = 20;
 
 /// A device that sends a block in the time in which this computer takes one.
 struct Flood {
@@ -22,6 +28,10 @@ struct Flood {
     /// Decoder of what is sent to it, and the requests to disarm in it.
     ear: Decoder,
     disarms: Arc<AtomicU32>,
+    /// Called in every millisecond of an answer to a disarm that is delayed.
+    while_disarming: Option<Box<dyn FnMut()>>,
+    /// Delay of the answers to come, ms.
+    delay_ms: u32,
 }
 
 impl Transport for Flood {
@@ -32,12 +42,21 @@ impl Transport for Flood {
             let request: Option<Request> = request.and_then(|body| body.message());
             if request.is_some_and(|request| request.operation == Operation::Disarm) {
                 self.disarms.fetch_add(1, Ordering::Relaxed);
+                if self.while_disarming.is_some() {
+                    self.delay_ms = SLOW_DISARM_MS;
+                }
             }
         }
         self.device.send(bytes)
     }
 
     fn receive(&mut self, buffer: &mut [u8], patience: Duration) -> Result<usize, TransportError> {
+        if let (1.., Some(meanwhile)) = (self.delay_ms, &mut self.while_disarming) {
+            self.delay_ms -= 1;
+            meanwhile();
+            self.device.wait(Duration::from_millis(1));
+            return Ok(0);
+        }
         if let Some(received) = &mut self.received {
             *received += 1;
             assert!(*received < 1_000, "pages never have their turn");
@@ -101,6 +120,8 @@ fn keeper(program: &Alone) -> Keeper<'_, Flood> {
         received: None,
         ear: Decoder::new(),
         disarms: Arc::default(),
+        while_disarming: None,
+        delay_ms: 0,
     };
     let client = Client::connect(flood).expect("a connection");
     let (orders, inbox) = mpsc::channel();
@@ -145,4 +166,136 @@ fn a_knee_that_asks_for_more_than_the_device_shows_is_told() {
         message.contains("the symptoms can ask for 5.1 N·m together"),
         "{message}"
     );
+}
+
+/// Queues a request as the connection of a page does.
+fn order(shared: &Shared, page: Page, request: FromPage) -> Receiver<Outcome> {
+    // The page answers its frames: nothing but the right decides.
+    shared.watchdog.begin();
+    shared.order(request, page, Role::Teacher).expect("a queue")
+}
+
+/// Has a request executed.
+fn done(keeper: &mut Keeper<'_, Flood>, page: Page, request: FromPage) -> Outcome {
+    let mut outcome = order(&keeper.shared, page, request);
+    keeper.take_orders();
+    outcome.try_recv().expect("an outcome")
+}
+
+/// A page that is taken control from sends `arm` before, in every millisecond of a slow disarm,
+/// and after it. None of these orders gives torque to the page that takes control.
+#[test]
+fn a_take_over_never_ends_armed() {
+    let program = Alone::default();
+    let mut keeper = keeper(&program);
+    let shared = keeper.shared.clone();
+    let pages = [shared.control.page(), shared.control.page()];
+    keeper.client.zero().expect("a zero");
+    let during = Arc::new(Mutex::new(Vec::new()));
+    for round in 0..500 {
+        let [old, new] = [pages[round % 2], pages[(round + 1) % 2]];
+        keeper.client.transport_mut().while_disarming = None;
+        done(&mut keeper, old, FromPage::Take).expect("control");
+        done(&mut keeper, old, FromPage::Arm).expect("torque");
+        let (sent, sender) = (during.clone(), shared.clone());
+        keeper.client.transport_mut().while_disarming = Some(Box::new(move || {
+            let outcome = order(&sender, old, FromPage::Arm);
+            sent.lock().expect("a list").push(outcome);
+        }));
+        let mut late: Vec<_> = (0..round % 3)
+            .map(|_| order(&shared, old, FromPage::Arm))
+            .collect();
+        let mut taken = order(&shared, new, FromPage::Take);
+        late.extend((0..round % 4).map(|_| order(&shared, old, FromPage::Arm)));
+        keeper.step();
+        late.push(order(&shared, old, FromPage::Arm));
+        keeper.step();
+        assert_eq!(taken.try_recv(), Ok(Ok(Value::Null)));
+        late.append(&mut during.lock().expect("a list"));
+        assert!(late.len() > 15, "{} orders in round {round}", late.len());
+        for mut outcome in late {
+            let outcome = outcome.try_recv().expect("an outcome");
+            assert!(outcome.unwrap_err().contains("take control first"));
+        }
+        assert!(!keeper.client.is_armed(), "armed in round {round}");
+        let state = keeper.client.status().expect("a status").state;
+        assert_eq!(state, State::Disarmed, "round {round}");
+        assert_eq!(shared.control.holder(), Holder::Page(new));
+    }
+}
+
+/// Two pages take control at once, and the first one arms in between.
+#[test]
+fn the_last_of_two_take_overs_does_not_inherit_torque() {
+    let program = Alone::default();
+    let mut keeper = keeper(&program);
+    let shared = keeper.shared.clone();
+    let [old, first, second] = [(); 3].map(|()| shared.control.page());
+    keeper.client.zero().expect("a zero");
+    done(&mut keeper, old, FromPage::Take).expect("control");
+    done(&mut keeper, old, FromPage::Arm).expect("torque");
+    for request in [
+        (first, FromPage::Take),
+        (first, FromPage::Arm),
+        (second, FromPage::Take),
+        (first, FromPage::Arm),
+    ] {
+        drop(order(&shared, request.0, request.1));
+    }
+    keeper.step();
+    assert!(!keeper.client.is_armed());
+    assert_eq!(shared.control.holder(), Holder::Page(second));
+}
+
+/// A page whose take-over is still queued when it goes does not keep control.
+#[test]
+fn a_page_that_goes_while_it_takes_control_has_none() {
+    let program = Alone::default();
+    let mut keeper = keeper(&program);
+    let shared = keeper.shared.clone();
+    let page = shared.control.page();
+    drop(order(&shared, page, FromPage::Take));
+    drop(shared.leave(page, Role::Teacher));
+    keeper.step();
+    assert_eq!(shared.control.holder(), Holder::Nobody);
+}
+
+/// Every end of torque names its cause until torque is given again.
+#[test]
+fn an_end_of_torque_says_who_ended_it() {
+    let program = Alone::default();
+    let mut keeper = keeper(&program);
+    let shared = keeper.shared.clone();
+    let [page, other] = [shared.control.page(), shared.control.page()];
+    keeper.client.zero().expect("a zero");
+    let cause = |keeper: &Keeper<'_, Flood>| keeper.torque.end()["cause"].clone();
+    for expected in [
+        "stop-viewer",
+        "disarm",
+        "take-over",
+        "page-left",
+        "watchdog",
+        "elsewhere",
+    ] {
+        done(&mut keeper, page, FromPage::Take).expect("control");
+        done(&mut keeper, page, FromPage::Arm).expect("torque");
+        assert_eq!(cause(&keeper), Value::Null);
+        match expected {
+            "stop-viewer" => {
+                drop(shared.order(FromPage::Stop, other, Role::Viewer));
+            }
+            "disarm" => drop(order(&shared, page, FromPage::Disarm)),
+            "take-over" => drop(order(&shared, other, FromPage::Take)),
+            "page-left" => drop(shared.leave(page, Role::Teacher)),
+            "watchdog" => {
+                shared.watchdog.made(1);
+                std::thread::sleep(crate::watchdog::TIMEOUT + Duration::from_millis(20));
+            }
+            // As the stop of another program does, of which the client hears afterwards.
+            _ => keeper.client.stop().expect("stopped"),
+        }
+        keeper.step();
+        assert_eq!(cause(&keeper), expected);
+        assert!(!keeper.client.is_armed());
+    }
 }

@@ -1,0 +1,116 @@
+//! Orders of pages: each is checked when its turn comes, not when it was queued.
+
+use super::Keeper;
+use super::torque_end::Cause;
+use crate::control::{Holder, Page};
+use crate::request::{Request, Right};
+use crate::shared::{Order, Outcome};
+use crepitus_client::{Client, Transport};
+use serde_json::Value;
+use std::time::Duration;
+
+/// Longest time in the queue of an order that [expires](Request::expires): the device keeps this
+/// thread busy for less, while it answers.
+const LONGEST_QUEUED: Duration = Duration::from_secs(5);
+
+impl<T: Transport> Keeper<'_, T> {
+    /// Executes what pages have ordered.
+    pub(super) fn take_orders(&mut self) {
+        while let Ok(order) = self.inbox.try_recv() {
+            let outcome = self.check(&order).and_then(|()| {
+                let Order { page, role, .. } = order;
+                match order.request {
+                    Request::Take => self.give_control(page),
+                    Request::Release => self.end_control(page),
+                    Request::Stop => {
+                        self.torque_ends(Cause::Stop(role));
+                        self.done(Client::stop)
+                    }
+                    Request::Disarm => {
+                        self.torque_ends(Cause::Disarm);
+                        self.done(Client::disarm)
+                    }
+                    request => self.execute(request),
+                }
+            });
+            self.status_is_due = true;
+            // The page may be gone.
+            let _ = order.reply.send(outcome);
+        }
+    }
+
+    /// Rejects an order of a page that has lost control since it was queued, and one that has
+    /// waited for too long.
+    fn check(&self, order: &Order) -> Result<(), String> {
+        let Order { request, page, .. } = order;
+        if request.right() == Right::Control && !self.shared.control.is_held_by(*page) {
+            return Err("another page has control: take control first".to_owned());
+        }
+        let waited = order.queued_at.elapsed();
+        if request.expires() && waited > LONGEST_QUEUED {
+            return Err(format!(
+                "the device kept the program busy for {:.1} s, so the request was not carried \
+                 out: try again",
+                waited.as_secs_f64()
+            ));
+        }
+        if self.is_lost && request.needs_device() {
+            return Err("the device is not connected: check the cable, then try again".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Gives control to a page; the arming by another page is not inherited. The other page has
+    /// lost control when the request was queued, so nothing of it is executed in between.
+    fn give_control(&mut self, page: Page) -> Outcome {
+        let control = &self.shared.control;
+        if control.is_held_by(page) {
+            return Ok(Value::Null);
+        }
+        control.withdraw_for(page);
+        // Without a connection there is no torque.
+        if !self.is_lost && (self.client.is_armed() || control.holder() == Holder::Passing) {
+            self.torque_ends(Cause::TakeOver);
+            self.done(Client::disarm)?;
+        }
+        self.shared.watchdog.begin();
+        self.shared.control.give(page);
+        Ok(Value::Null)
+    }
+
+    /// Ends control of a page, and torque if no page has control then.
+    fn end_control(&mut self, page: Page) -> Outcome {
+        // Given since the page has left.
+        self.shared.control.release(page);
+        if self.shared.control.holder() != Holder::Nobody || !self.client.is_armed() || self.is_lost
+        {
+            return Ok(Value::Null);
+        }
+        self.torque_ends(Cause::PageLeft);
+        self.done(Client::disarm)
+    }
+
+    /// Ends torque that no page is responsible for any more.
+    pub(super) fn supervise_page(&mut self) {
+        if !self.client.is_armed() {
+            return;
+        }
+        let cause = match self.shared.control.holder() {
+            Holder::Nobody => Cause::PageLeft,
+            Holder::Passing => Cause::TakeOver,
+            Holder::Page(_) if self.shared.watchdog.has_expired() => Cause::Watchdog,
+            Holder::Page(_) => return,
+        };
+        let why = match cause {
+            Cause::TakeOver => "another page takes control: torque is off",
+            Cause::PageLeft => "the controlling page has gone: torque is off",
+            _ => "the controlling page has not answered for 200 ms: torque is off",
+        };
+        self.torque_ends(cause);
+        self.message = Some(match self.client.disarm() {
+            Ok(()) => why.to_owned(),
+            Err(error) => format!("{why}; {error}"),
+        });
+        self.status_is_due = true;
+    }
+}
