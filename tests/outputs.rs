@@ -121,6 +121,12 @@ const CASES: &[Case] = &[
         "mine.parquet",
     ),
     file("params", SAVE, "PRESETS", "mine.toml"),
+    file(
+        "params",
+        &["backup", "--device", "sim"],
+        "",
+        "mine-backup.toml",
+    ),
     slow(
         "effects",
         &["low-speed", "--pictures"],

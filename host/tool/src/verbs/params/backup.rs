@@ -8,13 +8,14 @@ use clap::{Args, ValueHint};
 use crepitus_client::values::{allowed_text, full_name, parse_value, show_number, show_value};
 use crepitus_connection::device_text;
 use crepitus_files::input;
+use crepitus_files::output::{Inputs, NewFile};
 use crepitus_protocol::Values;
 use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter};
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::io::{ErrorKind, Write as _};
-use std::path::{Path, PathBuf};
+use std::io::Write as _;
+use std::path::PathBuf;
 use toml::{Table, Value};
 
 /// Version of the form of the file.
@@ -66,6 +67,12 @@ pub(super) fn backup(
     as_json: bool,
 ) -> Result<(), Failure> {
     let file = &arguments.file;
+    let new = NewFile::create(file, false, &Inputs::default())?;
+    if new.is_stdout() && as_json {
+        return Err(Failure::input(
+            "--json and a backup to - would both write to standard output: name a file",
+        ));
+    }
     let mut client = connect(device)?;
     let (revision, values) = client.parameters().map_err(failure)?;
     let is_saved = client.status().map_err(failure)?.saved == Some(revision);
@@ -91,7 +98,12 @@ pub(super) fn backup(
             let _ = writeln!(text, "{} = {shown}", parameter.key());
         }
     }
-    put(file, &text)?;
+    let cannot = |error| Failure::at(file, "cannot be written", &error);
+    (&mut new.as_file())
+        .write_all(text.as_bytes())
+        .map_err(cannot)?;
+    let on_stdout = new.is_stdout();
+    new.persist()?;
     if !is_saved {
         warn(
             "the device's active values are not saved on it: it would start with others. The backup has the \
@@ -103,30 +115,14 @@ pub(super) fn backup(
             "file": file, "revision": revision.0, "saved": is_saved, "parameters": PARAMETERS.len(),
         }));
     }
+    if on_stdout {
+        return Ok(());
+    }
     print(&format!(
         "{}: {} parameters of revision {revision} of {serial}\n",
         file.display(),
         PARAMETERS.len()
     ))
-}
-
-/// Puts a new file in its place, whole.
-fn put(path: &Path, text: &str) -> Result<(), Failure> {
-    let cannot = |error| Failure::at(path, "cannot be written", &error);
-    let mut file = crepitus_recording::new_file(path).map_err(cannot)?;
-    file.write_all(text.as_bytes())
-        .and_then(|()| file.as_file().sync_all())
-        .map_err(cannot)?;
-    match file.persist_noclobber(path) {
-        Ok(_) => Ok(()),
-        Err(error) if error.error.kind() == ErrorKind::AlreadyExists => {
-            Err(Failure::Input(format!(
-                "{} exists: choose another name, or remove it",
-                path.display()
-            )))
-        }
-        Err(error) => Err(cannot(error.error)),
-    }
 }
 
 /// A TOML string: its escapes are those of JSON.
