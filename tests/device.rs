@@ -162,7 +162,7 @@ fn a_device_is_backed_up_and_restored_by_name() {
     let restored = said(&["params", "restore", file]);
     for part in [
         "encoder.pulses",
-        "tremble.render",
+        "tremble.amplitude_nm",
         "not in the file",
         "clonus.render, clonus",
     ] {
