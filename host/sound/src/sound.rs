@@ -150,6 +150,10 @@ impl Sound {
         };
         let first_s = *self.first_s.get_or_insert(time_s);
         let place = (time_s - first_s) / self.step_s;
+        // At once: a gap of days would be written as silence up to the limit.
+        if (time_s - first_s) * f64::from(RATE_HZ) > LONGEST as f64 {
+            return Err(SoundError::TooLong);
+        }
         while (self.rows as f64) < place - 0.5 {
             self.missing += 1;
             self.push(self.last)?;

@@ -183,3 +183,16 @@ fn rows_too_far_apart_and_no_rows_are_errors() {
     let error = sound.write(&out, Path::new("x.wav"), "x").unwrap_err();
     assert!(matches!(error, SoundError::Nothing));
 }
+
+/// A recording through which a computer slept for a night is not filled with silence up to the limit.
+#[test]
+fn a_gap_longer_than_any_sound_ends_it_at_once() {
+    let mut sound = Sound::new(5e-5).unwrap();
+    for row in 0..100 {
+        sound.row(f64::from(row) * 5e-5, 0.1).unwrap();
+    }
+    let began = std::time::Instant::now();
+    let ended = sound.row(86_400.0, 0.1);
+    assert!(matches!(ended, Err(SoundError::TooLong)), "{ended:?}");
+    assert!(began.elapsed().as_secs() < 5);
+}
