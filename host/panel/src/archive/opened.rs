@@ -320,7 +320,7 @@ mod tests {
         );
     }
 
-    /// What stands before and after a gap is shown, however long it is, and nothing is kept for it.
+    /// Rows before and after a gap are shown, however long it is, and nothing is kept for it.
     #[test]
     fn a_gap_of_centuries_takes_no_memory() {
         for gap in [25 * 20_000, 86_400 * 20_000, 1 << 47] {

@@ -1,7 +1,7 @@
 //! `params backup` and `restore`: a whole device, by names that outlive versions.
 
 use super::Done;
-use crate::cli::DeviceArguments;
+use crate::cli::{DeviceArguments, Force};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::line::{connect, failure, failure_with};
 use clap::{Args, ValueHint};
@@ -35,9 +35,12 @@ Examples:
   crepitus params backup brace-7.toml
   crepitus params backup try.toml --device sim")]
 pub(super) struct Backup {
-    /// The file; it must not exist.
+    /// The file; it must not exist, or use --force. With - it is standard output.
     #[arg(value_hint = ValueHint::FilePath)]
     file: PathBuf,
+
+    #[command(flatten)]
+    force: Force,
 }
 
 /// Set all parameters of a device from a file of `backup`, in one commit.
@@ -67,7 +70,7 @@ pub(super) fn backup(
     as_json: bool,
 ) -> Result<(), Failure> {
     let file = &arguments.file;
-    let new = NewFile::create(file, false, &Inputs::default())?;
+    let new = NewFile::create(file, arguments.force.force, &Inputs::default())?;
     if new.is_stdout() && as_json {
         return Err(Failure::input(
             "--json and a backup to - would both write to standard output: name a file",
