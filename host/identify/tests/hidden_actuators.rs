@@ -70,8 +70,9 @@ fn all_are_found(identified: impl Fn(&Simulated, &mut fastrand::Rng) -> Result<A
             "{name}: worst {:.2} %, in its interval {inside} of {draws}",
             100.0 * worst
         );
-        // 95 of 100 are expected.
-        assert!(inside * 20 >= draws * 18, "{name}: {inside} of {draws}");
+        // 95 of 100 are expected: three deviations below are 88 of 100, and 34 of 40.
+        let least = if draws == DRAWS { 90 } else { 34 };
+        assert!(inside >= least, "{name}: {inside} of {draws}");
     }
 }
 
