@@ -12,6 +12,7 @@ const INPUTS: [&str; 14] = [
     "Cargo.toml",
     "device",
     "docs/faults.md",
+    "firmware/seal",
     "host",
     "lessons",
     "model",

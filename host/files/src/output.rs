@@ -48,6 +48,17 @@ pub fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     temporary_with_prefix(folder, TEMPORARY)
 }
 
+/// Creates a temporary file that only its owner can read; so can only they when it is in its place.
+///
+/// # Errors
+/// If it cannot be created.
+pub fn private_in(folder: &Path) -> io::Result<NamedTempFile> {
+    // The permissions of temporary files.
+    tempfile::Builder::new()
+        .prefix(TEMPORARY)
+        .tempfile_in(folder)
+}
+
 /// Creates a temporary file whose name begins with `prefix`.
 ///
 /// # Errors

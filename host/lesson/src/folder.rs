@@ -18,7 +18,7 @@ use crate::finding::Finding;
 use crate::report::{Text, report};
 use crate::session::{Session, SessionError};
 use crepitus_files::input::{self, InputError};
-use crepitus_files::output::{Claim, Hashed, OutputError, OwnedFolder, temporary_in};
+use crepitus_files::output::{Claim, Hashed, OutputError, OwnedFolder, private_in};
 use crepitus_scene::preset::Level;
 use std::fs;
 use std::io::{self, Write};
@@ -154,7 +154,8 @@ impl SessionFolder {
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
         let path = self.path.join(name);
         let put = || -> io::Result<()> {
-            let mut file = temporary_in(&self.path)?;
+            // Of students.
+            let mut file = private_in(&self.path)?;
             file.write_all(bytes)?;
             file.as_file().sync_all()?;
             let file = Hashed::of(file.into_temp_path())?;
