@@ -13,6 +13,7 @@ BEGINS = re.compile(r"^\s+(?:Running (?P<path>\S+ ?\S*) \((?P<file>[^)]*)\)|Doc-
 
 
 def main(into):
+    sys.stdin.reconfigure(errors="replace")
     seconds, name, since = [], None, time.monotonic()
     for line in sys.stdin:
         sys.stdout.write(line)
