@@ -83,8 +83,8 @@ impl Panel {
         page.until("the first messages", |page| {
             let has = |name: &str| page.latest.contains_key(name);
             let is_replay = has("hello") && page.latest["hello"]["source"]["kind"] == "replay";
-            let is_live = page.newest().is_some() && has("lesson");
-            has("status") && has("holder") && (is_replay || is_live)
+            let has_frame = page.newest().is_some();
+            has("status") && has("holder") && has_frame && (is_replay || has("lesson"))
         });
         page
     }
