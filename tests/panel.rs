@@ -11,6 +11,8 @@ mod tunnel;
 use page::{Page, Panel};
 use serde_json::{Value, json};
 use std::fs;
+use std::io::{ErrorKind, Read, Write};
+use std::net::TcpStream;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use support::served::{Served, signal};
@@ -37,6 +39,44 @@ fn only_a_link_opens_it() {
     let mut viewer = panel.viewer_page();
     assert_eq!(viewer.latest["hello"]["role"], "viewer");
     viewer.until("frames", |page| page.frames.len() > 10);
+}
+
+/// Connections without a token are closed within seconds, and hinder nobody.
+#[test]
+fn half_open_requests_are_closed_and_others_served() {
+    let panel = Panel::new(&SIM);
+    let mut viewer = panel.viewer_page();
+    let half = format!("GET / HTTP/1.1\r\nHost: {}\r\n", panel.host);
+    let is_open = |stream: &TcpStream| {
+        let read = (&mut &*stream).read(&mut [0; 64]);
+        read.is_err_and(|error| error.kind() == ErrorKind::WouldBlock)
+    };
+    let mut open = Vec::new();
+    for nth in 0..1000 {
+        let mut stream = TcpStream::connect(&panel.host).unwrap();
+        if nth % 2 == 0 {
+            stream.write_all(half.as_bytes()).unwrap();
+        }
+        stream.set_nonblocking(true).unwrap();
+        open.push(stream);
+        if nth % 100 == 99 {
+            viewer.go_on(Duration::from_millis(10));
+            open.retain(is_open);
+        }
+    }
+    // The newest make room for others at once.
+    assert_eq!(panel.status("/", &[]), 200);
+    assert!(open.len() < 1000, "none of them is closed early");
+    let begun = Instant::now();
+    while !open.is_empty() {
+        viewer.go_on(Duration::from_millis(100));
+        open.retain(is_open);
+        assert!(begun.elapsed() < Duration::from_secs(8), "{}", open.len());
+    }
+    // A page with a token outlasts them all, and another one is let in.
+    let frames = viewer.frames.len();
+    viewer.until("frames", |page| page.frames.len() > frames + 10);
+    panel.teacher_page();
 }
 
 #[test]

@@ -14,7 +14,7 @@
 //!
 //! | to find | look in |
 //! |---|---|
-//! | what is served, and to whom | `server.rs`, `guard.rs`, `tokens.rs`, `tickets.rs` |
+//! | what is served, and to whom | `server.rs`, `guard.rs`, `pending.rs`, `tokens.rs`, `tickets.rs` |
 //! | the connection of a page | `socket.rs`, `request.rs`, `control.rs` |
 //! | what is done with the device | `keeper.rs` |
 //! | who turns torque off when a page hangs | `watchdog.rs` |
@@ -34,6 +34,7 @@ mod guard;
 mod hello;
 mod keeper;
 mod panel;
+mod pending;
 mod replay;
 mod request;
 mod server;

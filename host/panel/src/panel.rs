@@ -4,6 +4,7 @@ use crate::archive::Archive;
 use crate::guard::Names;
 use crate::hello;
 use crate::keeper::{Keeper, Program};
+use crate::pending::Pending;
 use crate::server;
 use crate::shared::{Order, Shared};
 use crate::tokens::Tokens;
@@ -144,7 +145,7 @@ impl Panel {
             .spawn(move || archive.run(&asked))
             .map_err(|e| system(&e))?;
         let router = server::router(shared.clone(), Names { scheme, hosts });
-        let certificate = spawn(listener, router, settings.lan)?;
+        let certificate = spawn(listener, router, shared.pending.clone(), settings.lan)?;
         Ok(Self {
             shared,
             inbox,
@@ -199,6 +200,7 @@ fn described(source: &Source) -> Value {
 fn spawn(
     listener: TcpListener,
     router: axum::Router,
+    pending: Pending,
     lan: Option<IpAddr>,
 ) -> Result<Option<String>, PanelError> {
     let system = |error: &dyn std::fmt::Display| PanelError::System(error.to_string());
@@ -223,9 +225,9 @@ fn spawn(
             let served = runtime.block_on(async {
                 #[cfg(feature = "lan")]
                 if let Some(identity) = identity {
-                    return crate::tls::serve(listener, router, identity).await;
+                    return crate::tls::serve(listener, router, identity, pending).await;
                 }
-                server::serve(listener, router).await
+                server::serve(listener, router, pending).await
             });
             if let Err(error) = served {
                 eprintln!("warning: the panel's page is no longer served: {error}");

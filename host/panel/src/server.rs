@@ -2,11 +2,12 @@
 
 use crate::assets;
 use crate::guard::{self, Names, SOCKET};
+use crate::pending::{Listener, Peer, Pending};
 use crate::shared::Shared;
 use crate::socket;
 use axum::Router;
 use axum::extract::ws::WebSocketUpgrade;
-use axum::extract::{Path, Request, State};
+use axum::extract::{ConnectInfo, Path, Request, State};
 use axum::http::{StatusCode, header};
 use axum::middleware::{Next, from_fn};
 use axum::response::{IntoResponse, Response};
@@ -38,10 +39,15 @@ pub(crate) fn router(shared: Arc<Shared>, names: Names) -> Router {
 ///
 /// # Errors
 /// The listener fails.
-pub(crate) async fn serve(listener: TcpListener, router: Router) -> std::io::Result<()> {
+pub(crate) async fn serve(
+    listener: TcpListener,
+    router: Router,
+    pending: Pending,
+) -> std::io::Result<()> {
     listener.set_nonblocking(true)?;
     let listener = tokio::net::TcpListener::from_std(listener)?;
-    axum::serve(listener, router).await
+    let service = router.into_make_service_with_connect_info::<Peer>();
+    axum::serve(Listener { listener, pending }, service).await
 }
 
 async fn file(request: Request) -> Response {
@@ -59,11 +65,15 @@ async fn file(request: Request) -> Response {
     }
 }
 
-async fn upgrade(socket: WebSocketUpgrade, State(shared): State<Arc<Shared>>) -> Response {
+async fn upgrade(
+    socket: WebSocketUpgrade,
+    ConnectInfo(Peer(peer)): ConnectInfo<Peer>,
+    State(shared): State<Arc<Shared>>,
+) -> Response {
     socket
         .max_message_size(MOST_MESSAGE)
         .max_frame_size(MOST_MESSAGE)
-        .on_upgrade(move |socket| socket::talk(socket, shared))
+        .on_upgrade(move |socket| socket::talk(socket, peer, shared))
 }
 
 async fn report(Path(name): Path<String>, State(shared): State<Arc<Shared>>) -> Response {

@@ -9,6 +9,7 @@
 
 use crate::archive::Question;
 use crate::control::{Control, Page};
+use crate::pending::Pending;
 use crate::request::Request;
 use crate::tickets::Tickets;
 use crate::tokens::{Role, Tokens};
@@ -71,6 +72,8 @@ pub(crate) struct Shared {
     pub(crate) control: Control,
     pub(crate) tokens: Tokens,
     pub(crate) tickets: Tickets,
+    /// Connections without a token.
+    pub(crate) pending: Pending,
     /// Content of the first message to a page.
     pub(crate) hello: Value,
     /// A folder whose recordings must not be opened: of a blind lesson.
@@ -93,6 +96,7 @@ impl Shared {
             control: Control::new(),
             tokens,
             tickets: Tickets::default(),
+            pending: Pending::default(),
             hello,
             hidden: Arc::default(),
             orders,

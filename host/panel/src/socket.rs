@@ -14,6 +14,7 @@ use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
 use serde::Deserialize;
 use serde_json::{Value, json};
+use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::broadcast::error::RecvError;
@@ -50,13 +51,14 @@ struct First {
 }
 
 /// Talks to a page until it is gone; then it has no control, and no torque.
-pub(crate) async fn talk(socket: WebSocket, shared: Arc<Shared>) {
+pub(crate) async fn talk(socket: WebSocket, peer: SocketAddr, shared: Arc<Shared>) {
     let (mut sink, mut stream) = socket.split();
     let Some(role) = role(&mut stream, &shared).await else {
         let _ = send(&mut sink, text(&json!({ "refused": "wrong-token" }))).await;
         let _ = sink.close().await;
         return;
     };
+    shared.pending.admit(peer);
     let page = shared.control.page();
     let mut hello = shared.hello.clone();
     hello["page"] = json!(page);

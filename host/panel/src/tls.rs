@@ -1,8 +1,9 @@
 //! TLS for other computers of a network: a certificate of this run alone.
 
 use crate::panel::PanelError;
+use crate::pending::{Peer, Pending};
 use axum::Router;
-use axum_server::tls_rustls::RustlsConfig;
+use axum_server::tls_rustls::{RustlsAcceptor, RustlsConfig};
 use rcgen::CertifiedKey;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -50,12 +51,14 @@ pub(crate) async fn serve(
     listener: TcpListener,
     router: Router,
     identity: Identity,
+    pending: Pending,
 ) -> std::io::Result<()> {
     // Only fails if another one was installed before, which is as good.
     let _ = rustls::crypto::ring::default_provider().install_default();
     listener.set_nonblocking(true)?;
     let config = RustlsConfig::from_der(vec![identity.certificate], identity.key).await?;
-    axum_server::from_tcp_rustls(listener, config)?
-        .serve(router.into_make_service())
+    axum_server::from_tcp(listener)?
+        .acceptor(RustlsAcceptor::new(config).acceptor(pending))
+        .serve(router.into_make_service_with_connect_info::<Peer>())
         .await
 }
