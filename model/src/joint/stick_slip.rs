@@ -17,6 +17,10 @@ pub trait StickSlip<F: Real>: Send + 'static {
     /// missing samples.
     fn restart(&mut self, torque_nm: F, omega_rad_s: F);
 
+    /// Goes on in steps of another length, between two steps: `coefficients` are of the same
+    /// settings. A simulator splits a step so where the shaft's motion breaks.
+    fn change_step(&mut self, coefficients: StepCoefficients<F>);
+
     /// The numbers that its steps use.
     fn coefficients(&self) -> &StepCoefficients<F>;
 

@@ -68,6 +68,13 @@ impl<F: Real> Ticks<F> {
         }
     }
 
+    /// The same time in ticks of another length, `ratio` of them in one of these; computed in f64.
+    #[must_use]
+    pub fn stretched(self, ratio: f64) -> Self {
+        let ticks = f64::from_whole(self.whole) + self.fraction.to_f64();
+        Self::from_f64(ticks * ratio)
+    }
+
     /// The length in ticks as one number.
     #[inline]
     pub fn value(self) -> F {

@@ -120,6 +120,10 @@ mod tests {
             panic!("gaps here are short");
         }
 
+        fn change_step(&mut self, coefficients: StepCoefficients<f32>) {
+            self.coefficients = coefficients;
+        }
+
         fn coefficients(&self) -> &StepCoefficients<f32> {
             &self.coefficients
         }

@@ -364,6 +364,24 @@ impl<F: Real, L: Locate<F, Shape = Linear>> StickSlip<F> for Frozen<F, L> {
         self.omega_rad_s = omega_rad_s;
     }
 
+    fn change_step(&mut self, coefficients: StepCoefficients<F>) {
+        if let State::Slip(slip) = &mut self.state {
+            if slip.is_open {
+                self.ticks_left = slip.close(&self.coefficients).saturating_sub(1);
+            }
+            let ratio = self.coefficients.step_s.to_f64() / coefficients.step_s.to_f64();
+            let left = Ticks {
+                whole: self.ticks_left,
+                fraction: slip.end_fraction,
+            };
+            let left = left.stretched(ratio);
+            self.ticks_left = left.whole;
+            slip.end_fraction = left.fraction;
+            slip.duration = slip.duration.stretched(ratio);
+        }
+        self.coefficients = coefficients;
+    }
+
     fn coefficients(&self) -> &StepCoefficients<F> {
         &self.coefficients
     }

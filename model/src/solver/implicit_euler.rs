@@ -116,6 +116,13 @@ impl<F: Real> StickSlip<F> for ImplicitEuler<F> {
         self.v = omega_rad_s;
     }
 
+    fn change_step(&mut self, coefficients: StepCoefficients<F>) {
+        let of_step = Self::new(coefficients, self.v);
+        self.inertia_per_step = of_step.inertia_per_step;
+        self.mobility = of_step.mobility;
+        self.coefficients = of_step.coefficients;
+    }
+
     fn coefficients(&self) -> &StepCoefficients<F> {
         &self.coefficients
     }

@@ -427,6 +427,11 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
         self.omega_rad_s = omega_rad_s;
     }
 
+    fn change_step(&mut self, coefficients: StepCoefficients<F>) {
+        self.propagator = P::new(&coefficients);
+        self.coefficients = coefficients;
+    }
+
     fn coefficients(&self) -> &StepCoefficients<F> {
         &self.coefficients
     }

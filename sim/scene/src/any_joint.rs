@@ -75,6 +75,7 @@ impl<F: Real> JointVisitor<F> for Boxed {
 trait Erased<F: Real> {
     fn step(&mut self, shaft: &ShaftStep<F>, on_event: &mut dyn FnMut(Event<F>));
     fn restart(&mut self, torque_nm: F, omega_rad_s: F);
+    fn change_step(&mut self, coefficients: StepCoefficients<F>);
     fn coefficients(&self) -> &StepCoefficients<F>;
     fn phase(&self) -> Phase;
     fn torque_nm(&self) -> F;
@@ -89,6 +90,10 @@ impl<F: Real, J: StickSlip<F>> Erased<F> for J {
 
     fn restart(&mut self, torque_nm: F, omega_rad_s: F) {
         StickSlip::restart(self, torque_nm, omega_rad_s);
+    }
+
+    fn change_step(&mut self, coefficients: StepCoefficients<F>) {
+        StickSlip::change_step(self, coefficients);
     }
 
     fn coefficients(&self) -> &StepCoefficients<F> {
@@ -119,6 +124,10 @@ impl<F: Real> StickSlip<F> for AnyJoint<F> {
 
     fn restart(&mut self, torque_nm: F, omega_rad_s: F) {
         self.0.restart(torque_nm, omega_rad_s);
+    }
+
+    fn change_step(&mut self, coefficients: StepCoefficients<F>) {
+        self.0.change_step(coefficients);
     }
 
     fn coefficients(&self) -> &StepCoefficients<F> {

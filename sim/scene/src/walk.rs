@@ -1,5 +1,6 @@
 //! The motion of a scene, step by step, and the plant that goes along.
 
+use crepitus_model::Real;
 use crepitus_plant::actuator::Actuator;
 use crepitus_plant::boundary::MotionStep;
 use crepitus_plant::chain::Body;
@@ -14,6 +15,38 @@ pub struct Walk<M> {
     n: u64,
     time_s: f64,
     now: Body,
+    /// The parts of the last step that was split.
+    parts: Vec<Part>,
+    /// The shortest part, s: a break closer to an end of its part counts as there.
+    least_part_s: f64,
+}
+
+/// A part of a step that is split where the motion breaks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    /// Its length, s.
+    pub length_s: f64,
+    /// The motion as it begins, just inside.
+    pub from: Body,
+    /// The motion as it ends, just inside.
+    pub to: Body,
+}
+
+/// A break of the motion within a step, as the shaft of a plant gets to feel it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cut {
+    /// Its time, s.
+    pub time_s: f64,
+    /// The shaft just before it.
+    pub before: Body,
+    /// The shaft just after it.
+    pub after: Body,
+}
+
+/// The shortest part of a step, as a share of it. Velocities are rounded, and over a very
+/// short part that would be an acceleration.
+fn least_part<F: Real>() -> f64 {
+    if F::IS_SINGLE { 1.0 / 128.0 } else { 1e-6 }
 }
 
 impl<M: Borrow<Motion>> Walk<M> {
@@ -28,7 +61,17 @@ impl<M: Borrow<Motion>> Walk<M> {
             n: 0,
             time_s: 0.0,
             now,
+            parts: Vec::new(),
+            least_part_s: 0.0,
         }
+    }
+
+    /// The same walk for a joint that computes in `F`, to be made by
+    /// [`step_or_parts`](Self::step_or_parts) or [`advance_in_parts`](Self::advance_in_parts).
+    #[must_use]
+    pub fn in_parts<F: Real>(mut self) -> Self {
+        self.least_part_s = least_part::<F>() * self.clock.step_s;
+        self
     }
 
     /// Goes on with another motion, from its beginning. It begins where this one is, with the same
@@ -67,6 +110,13 @@ impl<M: Borrow<Motion>> Walk<M> {
             self.piece = self.motion.borrow().piece(self.piece.end_s);
         }
         let to = body(&self.piece, self.time_s);
+        self.arrive(to);
+        (from, to)
+    }
+
+    /// The end of a step within its piece, or at the end of that.
+    #[inline]
+    fn arrive(&mut self, to: Body) {
         self.now = to;
         if self.piece.end_s == self.time_s {
             self.piece = self.motion.borrow().piece(self.time_s);
@@ -75,7 +125,73 @@ impl<M: Borrow<Motion>> Walk<M> {
                 self.now = body(&self.piece, self.time_s);
             }
         }
-        (from, to)
+    }
+
+    /// The same as [`step`](Self::step); `None` if the motion breaks within the step, which
+    /// [`parts`](Self::parts) then has the parts of.
+    #[inline]
+    pub fn step_or_parts(&mut self) -> Option<(Body, Body)> {
+        self.n += 1;
+        self.time_s = self.clock.time_s(self.n);
+        if self.piece.end_s < self.time_s {
+            return self.split();
+        }
+        let from = self.now;
+        let to = body(&self.piece, self.time_s);
+        self.arrive(to);
+        Some((from, to))
+    }
+
+    /// The parts of the step that has just been split.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// Splits the step to the present time at the ends of its pieces; returns it whole where
+    /// these are all as good as at its ends.
+    #[cold]
+    fn split(&mut self) -> Option<(Body, Body)> {
+        let end_s = self.time_s;
+        let mut part_s = self.clock.time_s(self.n - 1);
+        let mut from = self.now;
+        // Velocity with which the step ends, where that jumps just before its end.
+        let mut ends_with = None;
+        self.parts.clear();
+        while self.piece.end_s < end_s {
+            let at_s = self.piece.end_s;
+            let next = self.motion.borrow().piece(at_s);
+            if at_s - part_s < self.least_part_s {
+                if next.jump {
+                    from.omega_rad_s = body(&next, part_s).omega_rad_s;
+                }
+            } else if end_s - at_s < self.least_part_s {
+                if next.jump {
+                    ends_with = ends_with.or(Some(body(&self.piece, end_s).omega_rad_s));
+                }
+            } else {
+                let to = body(&self.piece, at_s);
+                self.parts.push(Part {
+                    length_s: at_s - part_s,
+                    from,
+                    to,
+                });
+                from = if next.jump { body(&next, at_s) } else { to };
+                part_s = at_s;
+            }
+            self.piece = next;
+        }
+        let mut to = body(&self.piece, end_s);
+        self.arrive(to);
+        to.omega_rad_s = ends_with.unwrap_or(to.omega_rad_s);
+        if self.parts.is_empty() {
+            return Some((from, to));
+        }
+        self.parts.push(Part {
+            length_s: end_s - part_s,
+            from,
+            to,
+        });
+        None
     }
 
     /// One step of the motion and of a plant that is held by it; returns the shaft at its
@@ -93,6 +209,73 @@ impl<M: Borrow<Motion>> Walk<M> {
             plant.jump(self.now.omega_rad_s);
         }
         shaft
+    }
+
+    /// The same as [`advance`](Self::advance), split where the motion breaks; adds what the
+    /// plant's shaft made of each break within the step, or as it began, to `cuts`.
+    #[inline]
+    pub fn advance_in_parts<A: Actuator>(
+        &mut self,
+        plant: &mut Plant<A>,
+        cuts: &mut Vec<Cut>,
+    ) -> Body {
+        let (start_s, before) = (self.time_s, self.now);
+        let to = match self.step_or_parts() {
+            Some((from, to)) => {
+                if from.omega_rad_s != before.omega_rad_s {
+                    cuts.push(cut(plant, start_s, (before, from)));
+                }
+                plant.advance(&MotionStep {
+                    length_s: self.clock.step_s,
+                    from,
+                    to,
+                });
+                to
+            }
+            None => self.advance_through_parts(plant, (start_s, before), cuts),
+        };
+        let shaft = plant.shaft();
+        if self.now.omega_rad_s != to.omega_rad_s {
+            plant.jump(self.now.omega_rad_s);
+        }
+        shaft
+    }
+
+    /// Advances `plant` through the parts of the step that began at this time, with this motion.
+    #[cold]
+    fn advance_through_parts<A: Actuator>(
+        &self,
+        plant: &mut Plant<A>,
+        (start_s, before): (f64, Body),
+        cuts: &mut Vec<Cut>,
+    ) -> Body {
+        let (mut time_s, mut last) = (start_s, before);
+        for part in &self.parts {
+            if time_s > start_s || part.from.omega_rad_s != before.omega_rad_s {
+                cuts.push(cut(plant, time_s, (last, part.from)));
+            }
+            plant.advance(&MotionStep {
+                length_s: part.length_s,
+                from: part.from,
+                to: part.to,
+            });
+            time_s += part.length_s;
+            last = part.to;
+        }
+        last
+    }
+}
+
+/// Takes a plant over a break of its motion, which is `last` before it and `next` after.
+fn cut<A: Actuator>(plant: &mut Plant<A>, time_s: f64, (last, next): (Body, Body)) -> Cut {
+    let before = plant.shaft();
+    if next.omega_rad_s != last.omega_rad_s {
+        plant.jump(next.omega_rad_s);
+    }
+    Cut {
+        time_s,
+        before,
+        after: plant.shaft(),
     }
 }
 

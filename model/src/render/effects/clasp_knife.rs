@@ -330,6 +330,12 @@ impl<F: Real> Law for ClaspKnife<F> {
         }
     }
 
+    fn retime(&mut self, settings: &ClaspKnifeSettings, timing: &Timing, _: f64) {
+        let share = timing.step_s / settings.collapse_s;
+        self.with.rate = F::from_f64(-share);
+        self.with.lost = F::from_f64(-libm::expm1(-share));
+    }
+
     fn release(&mut self, slew_nm: F) {
         self.play.release(slew_nm);
         self.torque_nm = self.with.sense * self.play.torque_nm();
@@ -398,13 +404,38 @@ impl<F: Real> ClaspKnife<F> {
         let nm = self.grow(F::ONE, beyond_rad, travel, on_change);
         if with.release.is_none() && nm >= with.release_nm {
             let before_nm = before.torque_nm();
-            let fraction = ((with.release_nm - before_nm) / (nm - before_nm).at_least(F::EPSILON))
-                .at_least(from)
-                .at_most(F::ONE);
+            let line = (with.release_nm - before_nm) / (nm - before_nm).at_least(F::EPSILON);
+            let located = self.release_place(&before).map(|place| {
+                let beyond_rad = with.sense * travel.end_beyond(&place);
+                if beyond_rad >= with.sense * travel.delta_rad {
+                    F::ZERO
+                } else {
+                    travel.reaches(&place)
+                }
+            });
+            let fraction = located.unwrap_or(line).at_least(from).at_most(F::ONE);
             self.play = before;
             return self.collapse(fraction, travel, on_change);
         }
         nm
+    }
+
+    /// Place at which both the spring and the limit, each a line over the angle, have come to the
+    /// torque of the release, from a play that was as `before`. In f32, and where a commit left
+    /// torque beyond the limit, the torque is taken for a line over the travel instead.
+    fn release_place(&self, before: &Play<F>) -> Option<Position<F>> {
+        let with = &self.with;
+        let spring = before.reaches(with.release_nm, with.stiffness, with.sense)?;
+        let missing_nm = with.release_nm - with.onset_nm;
+        if F::IS_SINGLE || (missing_nm > F::ZERO && with.slope <= F::ZERO) {
+            return None;
+        }
+        if missing_nm <= F::ZERO {
+            return Some(spring);
+        }
+        let limit = with.onset.moved(with.sense * (missing_nm / with.slope));
+        let further_rad = with.sense * limit.beyond(&spring, with.scale.rad_per_count);
+        Some(if further_rad > F::ZERO { limit } else { spring })
     }
 
     /// Follows the limit that builds, up to a share of the travel.

@@ -161,6 +161,16 @@ impl<F: Real> Since<F> {
         F::from_whole(u64::from(self.whole)) + self.rest
     }
 
+    /// The same time in ticks of another length, `ratio` of them in one of these.
+    fn stretched(&self, ratio: f64) -> Self {
+        let ticks = (f64::from(self.whole) + self.rest.to_f64()) * ratio;
+        let whole = u32::try_from(ticks.whole()).unwrap_or(u32::MAX);
+        Self {
+            whole,
+            rest: F::from_f64(ticks - f64::from(whole)),
+        }
+    }
+
     /// Time since an instant that is so many ticks later.
     fn later(&self, ticks: F) -> Self {
         let whole = ticks.whole();
@@ -334,6 +344,16 @@ impl<F: Real> Law for Clonus<F> {
         // Another rhythm begins with another stretch.
         *self = Self::new(coefficients);
         self.stage = Stage::Over;
+    }
+
+    fn retime(&mut self, settings: &ClonusSettings, timing: &Timing, ratio: f64) {
+        let ticks = |seconds: f64| F::from_f64(seconds / timing.step_s);
+        self.with.period = ticks(1.0 / settings.frequency_hz);
+        self.with.delay = ticks(settings.delay_s);
+        self.interval_since = self.interval_since.stretched(ratio);
+        self.beat_since = self.beat_since.stretched(ratio);
+        self.interval = F::from_f64(self.interval.to_f64() * ratio);
+        self.per_tick = F::from_f64(self.per_tick.to_f64() / ratio);
     }
 
     fn release(&mut self, slew_nm: F) {

@@ -246,7 +246,14 @@ impl<F: Real> Law for Cogwheel<F> {
         self.elastic_nm = F::ZERO;
         self.at = match self.with.clock {
             Clock::Time(_) => 0,
-            Clock::Space(per_count, per_rest) => angle(place, per_count, per_rest),
+            Clock::Space(per_count, per_rest) => {
+                let at = self.angle(place, per_count, per_rest);
+                // Exactly on an edge it is on its upper side.
+                let before = |edge: u64| edge.wrapping_sub(at);
+                let low_from = self.with.low_from;
+                let on = [0, low_from].into_iter().find(|edge| before(*edge) < EDGE);
+                if F::IS_SINGLE { at } else { on.unwrap_or(at) }
+            }
         };
         self.is_high = self.at < self.with.low_from;
         self.switched = *place;
@@ -265,7 +272,7 @@ impl<F: Real> Law for Cogwheel<F> {
                 (turned, false)
             }
             Clock::Space(per_count, per_rest) => {
-                self.at = angle(&travel.to, per_count, per_rest);
+                self.at = self.angle(&travel.to, per_count, per_rest);
                 let turned = self.at.wrapping_sub(before);
                 let back = travel.delta_rad < F::ZERO;
                 (if back { turned.wrapping_neg() } else { turned }, back)
@@ -298,6 +305,12 @@ impl<F: Real> Law for Cogwheel<F> {
         let (from, to) = (self.with.stiffness, coefficients.stiffness);
         self.play.change(from, to, slew_nm);
         self.with = coefficients;
+    }
+
+    fn retime(&mut self, settings: &CogwheelSettings, timing: &Timing, _: f64) {
+        if let Clock::Time(per_tick) = &mut self.with.clock {
+            *per_tick = (settings.frequency_hz * timing.step_s * TOOTH).whole();
+        }
     }
 
     fn release(&mut self, slew_nm: F) {
@@ -334,7 +347,26 @@ fn angle<F: Real>(place: &Position<F>, per_count: u64, per_rest: u64) -> u64 {
     }
 }
 
+/// Width of an edge in f64, 2⁻⁶⁴ of a tooth: more than the rounding of an angle of some turns.
+const EDGE: u64 = 1 << 26;
+
 impl<F: Real> Cogwheel<F> {
+    /// An angle as part of a tooth. In f64 to its rounding, in f32 to 2⁻³² rad.
+    #[inline]
+    fn angle(&self, place: &Position<F>, per_count: u64, per_rest: u64) -> u64 {
+        if F::IS_SINGLE {
+            return angle(place, per_count, per_rest);
+        }
+        let counts = angle(&Position::<F>::at(place.count), per_count, per_rest);
+        let rest = place.rest_rad.to_f64() / self.with.scale.rad_per_count.to_f64()
+            * f64::from_whole(per_count);
+        if rest < 0.0 {
+            counts.wrapping_sub((-rest).whole())
+        } else {
+            counts.wrapping_add(rest.whole())
+        }
+    }
+
     #[inline]
     fn limits(&self) -> Limits<F> {
         Limits::both(if self.is_high {
@@ -361,7 +393,12 @@ impl<F: Real> Cogwheel<F> {
         };
         let beyond = turn.distance(edge, self.at);
         // Noise at the edge of a tooth is no edge.
-        if matches!(self.with.clock, Clock::Space(..)) && beyond < self.with.flicker {
+        let flicker = if F::IS_SINGLE {
+            self.with.flicker
+        } else {
+            self.with.flicker.max(EDGE)
+        };
+        if matches!(self.with.clock, Clock::Space(..)) && beyond < flicker {
             return F::ZERO;
         }
         let fraction = turn.share(edge);
@@ -387,7 +424,12 @@ impl<F: Real> Cogwheel<F> {
         self.switched = travel.to;
         let flicker_rad = self.with.flicker_rad;
         // A joint that turned back since the last edge may be where it was then, and moves.
-        let moves = moved_rad.abs() > flicker_rad || travel.delta_rad.abs() > flicker_rad;
+        let moves = if F::IS_SINGLE || flicker_rad > F::ZERO {
+            moved_rad.abs() > flicker_rad || travel.delta_rad.abs() > flicker_rad
+        } else {
+            // Its true velocity is known.
+            travel.omega_start_rad_s != F::ZERO || travel.omega_end_rad_s != F::ZERO
+        };
         // At rest one give is felt, then there is silence.
         if moves || after_nm != before_nm {
             let word = if is_high { Word::Catch } else { Word::Give };

@@ -112,6 +112,13 @@ impl<F: Real> Play<F> {
         self.now_nm
     }
 
+    /// Place at which the spring, stretched on in the direction `sense`·φ, has this torque; `None`
+    /// while more than the limits is allowed.
+    pub fn reaches(&self, nm: F, stiffness: F, sense: F) -> Option<Position<F>> {
+        let stretch_rad = (nm - self.there_nm) / stiffness;
+        (self.allowed_nm == F::ZERO).then(|| self.place.moved(sense * stretch_rad))
+    }
+
     /// State of the spring.
     #[inline]
     pub fn hold(&self) -> Hold {

@@ -367,6 +367,15 @@ impl<F: Real> Law for Spasticity<F> {
         }
     }
 
+    fn retime(&mut self, settings: &SpasticitySettings, timing: &Timing, _: f64) {
+        // The memory of a reflex is of whole ticks.
+        self.caught.retime(settings, timing);
+    }
+
+    fn forget_part(&mut self, before: &Self) {
+        self.reflex.forget_part(&before.reflex);
+    }
+
     fn release(&mut self, slew_nm: F) {
         match self.form {
             Form::Catch => self.caught.release(slew_nm),

@@ -261,6 +261,15 @@ pub trait Law: Sized {
     /// most `slew_nm` a tick to what they allow.
     fn adopt(&mut self, coefficients: Self::Coefficients, slew_nm: Self::Real);
 
+    /// Goes on in ticks of another length, of which there were `ratio` in one of these before: a
+    /// simulator splits a tick so where the shaft's motion breaks. The default is that of a law
+    /// that counts no time.
+    fn retime(&mut self, _settings: &Self::Settings, _timing: &Timing, _ratio: f64) {}
+
+    /// Takes back what the last part of a tick has added to a memory of whole ticks: `before` is
+    /// the law as that part began.
+    fn forget_part(&mut self, _before: &Self) {}
+
     /// There are no samples: its torque falls by `slew_nm`.
     fn release(&mut self, slew_nm: Self::Real);
 

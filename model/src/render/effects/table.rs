@@ -21,6 +21,26 @@ macro_rules! effects {
             <$symptom::$s_law<f64> as Law>::WORDS,
         )),*];
 
+        impl<F: Real> Effects<F> {
+            /// Goes on in ticks of another length, see [`Law::retime`]: the symptoms alone, what
+            /// is added to them knows whole ticks only.
+            pub fn retime(&mut self, settings: &EffectSettings, timing: &Timing, ratio: f64) {
+                $(if let (Some(law), Some(settings)) = (&mut self.$symptom, &settings.$symptom) {
+                    law.retime(settings, timing, ratio);
+                })*
+                self.scale = Scale::new(&timing.sight, timing.step_s);
+            }
+
+            /// Ends a part of a tick that began as `before`: what knows whole ticks only is as it
+            /// was then. The tank takes a part for a tick.
+            pub fn forget_part(&mut self, before: &Self) {
+                $(if let (Some(law), Some(before)) = (&mut self.$symptom, &before.$symptom) {
+                    law.forget_part(before);
+                })*
+                $(self.$addition = before.$addition;)*
+            }
+        }
+
         impl EffectSettings {
             /// Checks each symptom by itself.
             fn check_symptoms(&self) -> Result<(), SettingsError> {

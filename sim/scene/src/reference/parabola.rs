@@ -20,12 +20,17 @@ impl Parabola {
             rate,
             curvature,
         } = *self;
-        if left < -slack || (left <= 0.0 && rate > 0.0) {
+        let turns_back = curvature < 0.0 && rate * rate <= -2.0 * curvature * (slack + left.min(0.0));
+        if left < -slack || (left <= 0.0 && rate > 0.0 && !turns_back) {
             return Some(0.0);
         }
         let left = left.max(0.0);
         if rate > 0.0 {
             let square = rate * rate + 2.0 * curvature * left;
+            // Its top is at the limit, to rounding: the limit itself still holds.
+            if curvature < 0.0 && square <= -2.0 * curvature * slack {
+                return None;
+            }
             return (square >= 0.0).then(|| 2.0 * left / (rate + square.sqrt()));
         }
         // First away from the limit, then towards it.
@@ -64,8 +69,12 @@ mod tests {
 
     #[test]
     fn at_the_limit_it_is_where_it_goes_that_counts() {
+        // A top at the limit, and one beyond it.
+        assert_eq!(root(1.0, 2.0, -2.0), None);
+        assert_eq!(root(1.0, 2.0, -2.0 + 1e-9).map(|u| u > 0.9), Some(true));
         for left in [0.0, -1e-13] {
             assert_eq!(root(left, 1.0, -5.0), Some(0.0));
+            assert_eq!(root(left, 1e-7, -5.0), None);
             assert_eq!(root(left, 0.0, 1.0), Some(0.0));
             assert_eq!(root(left, -1.0, 4.0), Some(0.5));
             assert_eq!(root(left, -1.0, 0.0), None);

@@ -1,14 +1,14 @@
 //! A run with a plant: device → actuator → chain → boundary, tick by tick. The
 //! shaft does what comes of it.
 
-use super::device::{Device, Happened, device};
+use super::device::{Device, Happened, Span, device};
 use super::stages;
 use super::stepping::{CHECK_STEPS, PROGRESS_STEPS};
 use super::watch::{Ended, Stopped, Watch};
 use super::{Diverged, RunError, Totals, steps};
 use crate::any_joint::Precise;
 use crate::scene::Scene;
-use crate::walk::Walk;
+use crate::walk::{Cut, Walk};
 use crepitus_model::render::effects::{EffectSpec, SPECS};
 use crepitus_model::solver::Solver;
 use crepitus_plant::boundary::MotionStep;
@@ -117,8 +117,10 @@ pub(super) fn simulate<F: Precise>(
             .collect(),
         tick_s,
         coil_v: 0.0,
+        splits: !scene.is_device && scene.encoder.is_none(),
+        cuts: Vec::new(),
     };
-    run.go(scene, watch)
+    run.go::<F>(scene, watch)
 }
 
 struct Run {
@@ -128,6 +130,10 @@ struct Run {
     tick_s: f64,
     /// Voltage for the coil, which its PWM loads with the next tick.
     coil_v: f64,
+    /// Whether a tick is split where the motion breaks: a device samples on its ticks.
+    splits: bool,
+    /// Breaks of the motion within the tick.
+    cuts: Vec<Cut>,
     /// Torque that the hand feels in the first tick, N·m; it stands in the first row, too.
     first_felt_nm: f64,
 }
@@ -162,11 +168,15 @@ impl Run {
         })
     }
 
-    fn go(mut self, scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, Ended> {
+    fn go<F: Precise>(
+        mut self,
+        scene: &Scene,
+        watch: &mut dyn Watch,
+    ) -> Result<Totals, Ended> {
         let (steps, every) = steps(scene);
         let wants_rows = watch.wants_rows();
         let parts = scene.substeps;
-        let mut walk = Walk::new(&scene.motion, self.tick_s / f64::from(parts));
+        let mut walk = Walk::new(&scene.motion, self.tick_s / f64::from(parts)).in_parts::<F>();
         let is_felt = scene.is_held();
         let mut felt = Felt::new();
         let mut felt_nm = self.first_felt_nm;
@@ -221,7 +231,17 @@ impl Run {
             for stage in &mut self.stages {
                 stage.work_j += stage.added_nm * turned;
             }
-            self.device.tick(time_s, &before, &after, &mut events);
+            if self.cuts.is_empty() {
+                self.device.tick(time_s, &before, &after, &mut events);
+            } else {
+                let span = Span {
+                    start_s: time_s,
+                    length_s: self.tick_s,
+                    from: before,
+                    to: after,
+                };
+                self.device.tick_in_parts(&span, &self.cuts, &mut events);
+            }
             // As a row, an event holds numbers.
             if !events.is_empty()
                 && let Some(diverged) = self.diverged(scene, time_s)
@@ -295,8 +315,15 @@ impl Run {
     #[inline]
     fn advance(&mut self, walk: &mut Walk<&Motion>, parts: u32) -> Body {
         let mut shaft = self.plant.shaft();
-        for _ in 0..parts {
-            shaft = walk.advance(&mut self.plant);
+        if self.splits {
+            self.cuts.clear();
+            for _ in 0..parts {
+                shaft = walk.advance_in_parts(&mut self.plant, &mut self.cuts);
+            }
+        } else {
+            for _ in 0..parts {
+                shaft = walk.advance(&mut self.plant);
+            }
         }
         shaft
     }

@@ -2,12 +2,13 @@
 //! one call, so that the loop around them is the same for all.
 
 use super::sensor::{Encoded, Ideal, Sensor};
-use super::stages::{self, HasJoint, Rendering};
+use super::stages::{self, HasJoint, Rendering, Retiming};
 use super::stepping::StepAccounting;
 use super::tally::Tally;
 use crate::any_joint::{AnyJoint, Precise};
 use crate::scene::Scene;
 use crate::trace::{Column, ColumnKind, EventRecord, SymptomEvent};
+use crate::walk::Cut;
 use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::effects::EffectSpec;
 use crepitus_model::render::effects::symptom::Change;
@@ -62,6 +63,11 @@ impl Recorder {
         }
     }
 
+    /// The same for what happens in a part of a tick.
+    fn over(self, step_s: f64) -> Self {
+        Self { step_s, ..self }
+    }
+
     fn note<F: Real>(
         self,
         (start_s, from, to): (f64, &Body, &Body),
@@ -88,6 +94,38 @@ impl Recorder {
     }
 }
 
+/// A tick, or a part of one, and what the shaft does in it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub(super) start_s: f64,
+    pub(super) length_s: f64,
+    pub(super) from: Body,
+    pub(super) to: Body,
+}
+
+impl Span {
+    /// Its parts, between breaks of the motion; one at its start only tells what it starts with.
+    fn parts(&self, cuts: &[Cut]) -> Vec<Self> {
+        let mut parts = Vec::with_capacity(cuts.len() + 1);
+        let mut rest = *self;
+        for cut in cuts {
+            let length_s = cut.time_s - rest.start_s;
+            if length_s > 0.0 {
+                parts.push(Self {
+                    length_s,
+                    to: cut.before,
+                    ..rest
+                });
+            }
+            rest.start_s = cut.time_s;
+            rest.length_s -= length_s;
+            rest.from = cut.after;
+        }
+        parts.push(rest);
+        parts
+    }
+}
+
 /// The device's renderer, on the shaft as measured.
 pub(super) trait Device {
     /// Output from now to the end of the next tick.
@@ -96,6 +134,9 @@ pub(super) trait Device {
     /// One tick, which began at `start_s` and in which the shaft moved so. What
     /// happens is added to `events`, of each effect in the order of time.
     fn tick(&mut self, start_s: f64, from: &Body, to: &Body, events: &mut Vec<Happened>);
+
+    /// One tick of a bare solver, in the parts that the motion breaks it into.
+    fn tick_in_parts(&mut self, tick: &Span, cuts: &[Cut], events: &mut Vec<Happened>);
 
     /// Writes its columns.
     fn write(&self, row: &mut Vec<f64>);
@@ -180,6 +221,7 @@ fn watching<F: Real, P: Rendering<F> + 'static, S: Sensor<F> + 'static>(
         stages,
         sensor,
         recorder: Recorder::new(scene),
+        retiming: Retiming::new(scene, scene.step_s()),
         shown,
     })
 }
@@ -219,6 +261,7 @@ impl<S: 'static> Maker<'_, S> {
             stages,
             sensor: self.sensor,
             recorder: Recorder::new(self.scene),
+            retiming: Retiming::new(self.scene, self.step_s),
             accounting,
             shown,
         })
@@ -257,6 +300,7 @@ struct Joined<F, P, S> {
     stages: P,
     sensor: S,
     recorder: Recorder,
+    retiming: Retiming,
     accounting: StepAccounting,
     shown: Shown<F>,
 }
@@ -291,6 +335,41 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
         }
     }
 
+    fn tick_in_parts(&mut self, tick: &Span, cuts: &[Cut], events: &mut Vec<Happened>) {
+        let parts = tick.parts(cuts);
+        let (accounting, events) = (&mut self.accounting, RefCell::new(events));
+        let mut jump_nm = F::ZERO;
+        for (left, part) in (0..parts.len()).rev().zip(&parts) {
+            let Span { from, to, .. } = part;
+            let seen = self.sensor.see(from, to);
+            let recorder = self.recorder.over(part.length_s);
+            accounting.step_s = part.length_s;
+            self.retiming.ticks_of(part.length_s);
+            let is_last = left == 0;
+            self.shown = self.stages.tick_part(
+                &Seen::taken(&seen, self.sensor.place(to)),
+                (&self.retiming, is_last, jump_nm),
+                &mut |event| {
+                    let event = accounting.event(part.start_s, &seen, &event);
+                    events.borrow_mut().push(Happened::Joint(event));
+                },
+                &mut |effect, change| {
+                    let events = &mut events.borrow_mut();
+                    recorder.note((part.start_s, from, to), effect, &change, events);
+                },
+            );
+            jump_nm = self.shown.jump_nm;
+            if is_last {
+                accounting.end_step(&seen, self.stages.joint());
+            } else {
+                accounting.end_part(&seen, self.stages.joint());
+            }
+        }
+        accounting.step_s = tick.length_s;
+        self.retiming.ticks_of(tick.length_s);
+        self.stages.retime(&self.retiming);
+    }
+
     fn write(&self, row: &mut Vec<f64>) {
         let joint = self.stages.joint();
         row.extend([
@@ -319,6 +398,7 @@ struct Watching<F, P, S> {
     stages: P,
     sensor: S,
     recorder: Recorder,
+    retiming: Retiming,
     shown: Shown<F>,
 }
 
@@ -335,6 +415,28 @@ impl<F: Real, P: Rendering<F>, S: Sensor<F>> Device for Watching<F, P, S> {
             &mut |_| {},
             &mut |effect, change| recorder.note((start_s, from, to), effect, &change, events),
         );
+    }
+
+    fn tick_in_parts(&mut self, tick: &Span, cuts: &[Cut], events: &mut Vec<Happened>) {
+        let parts = tick.parts(cuts);
+        let mut jump_nm = F::ZERO;
+        for (left, part) in (0..parts.len()).rev().zip(&parts) {
+            let Span { from, to, .. } = part;
+            let seen = self.sensor.see(from, to);
+            let recorder = self.recorder.over(part.length_s);
+            self.retiming.ticks_of(part.length_s);
+            self.shown = self.stages.tick_part(
+                &Seen::taken(&seen, self.sensor.place(to)),
+                (&self.retiming, left == 0, jump_nm),
+                &mut |_| {},
+                &mut |effect, change| {
+                    recorder.note((part.start_s, from, to), effect, &change, events);
+                },
+            );
+            jump_nm = self.shown.jump_nm;
+        }
+        self.retiming.ticks_of(tick.length_s);
+        self.stages.retime(&self.retiming);
     }
 
     fn write(&self, row: &mut Vec<f64>) {

@@ -20,11 +20,16 @@ const ROUNDING_F64: f64 = 1e-12;
 /// The same in single precision.
 const ROUNDING_F32: f64 = 1e-4;
 
+/// What counts as at rest, as a share of the rounding of the velocity of a swing over Ts/kr.
+const REST: f64 = 1e-6;
+
 /// Duration and extent of the shaft's lag behind the object.
 #[derive(Clone, Copy, Debug)]
 pub struct Lead {
     kinetic_nm: f64,
     rounding: f64,
+    /// A velocity that is none: so much less than that of the object's swing, rad/s.
+    rest_rad_s: f64,
     step_s: f64,
     /// Number of steps from one look to the next.
     stride: u32,
@@ -47,13 +52,17 @@ impl Lead {
             }
             Convention::Paper | Convention::Physical => 1,
         };
+        let rounding = if is_single {
+            ROUNDING_F32
+        } else {
+            ROUNDING_F64
+        };
+        let p = &settings.parameters;
+        let swing_rad_s = p.natural_rad_s() * p.static_torque_nm / p.stiffness_nm_per_rad;
         Self {
-            kinetic_nm: settings.parameters.kinetic_torque_nm,
-            rounding: if is_single {
-                ROUNDING_F32
-            } else {
-                ROUNDING_F64
-            },
+            kinetic_nm: p.kinetic_torque_nm,
+            rounding,
+            rest_rad_s: REST * rounding * swing_rad_s,
             step_s,
             stride,
             left: stride,
@@ -84,7 +93,8 @@ impl Lead {
     /// A look that stands for `dt_s`.
     pub fn look_for(&mut self, dt_s: f64, sign: f64, omega_rad_s: f64, theta_dot_rad_s: f64) {
         let behind_rad_s = -sign * (omega_rad_s - theta_dot_rad_s);
-        if behind_rad_s > self.rounding * (omega_rad_s.abs() + theta_dot_rad_s.abs()) {
+        let rounding_rad_s = self.rounding * (omega_rad_s.abs() + theta_dot_rad_s.abs());
+        if behind_rad_s > rounding_rad_s + self.rest_rad_s {
             self.behind_s += dt_s;
             self.behind_j += self.kinetic_nm * behind_rad_s * dt_s;
             self.worst_rad_s = self.worst_rad_s.max(behind_rad_s);
@@ -116,6 +126,8 @@ mod tests {
         lead.look(1.0, 1.0, 0.9);
         lead.look(-1.0, -1.0, -0.9);
         lead.look(1.0, 1.0, 1.0 + 1e-14);
+        // An object that has died away on a shaft at rest.
+        lead.look(1.0, 0.0, 4.3e-42);
         assert_eq!((lead.behind_s, lead.behind_j), (0.0, 0.0));
         lead.look(1.0, 0.5, 0.75);
         lead.look(-1.0, -0.5, -1.0);

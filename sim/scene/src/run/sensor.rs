@@ -15,6 +15,9 @@ pub(super) trait Sensor<F: Real> {
     /// Its columns in the trace.
     const COLUMNS: &'static [Column];
 
+    /// Whether a step may be split where the motion breaks: a device samples on its ticks.
+    const SPLITS: bool;
+
     /// Takes in one step. Velocities are those just inside the step.
     fn see(&mut self, from: &Body, to: &Body) -> ShaftStep<F>;
 
@@ -30,6 +33,7 @@ pub(super) struct Ideal;
 
 impl<F: Real> Sensor<F> for Ideal {
     const COLUMNS: &'static [Column] = &[];
+    const SPLITS: bool = true;
 
     #[inline]
     fn see(&mut self, from: &Body, to: &Body) -> ShaftStep<F> {
@@ -82,6 +86,7 @@ impl<F: Real> Encoded<F> {
 }
 
 impl<F: Real> Sensor<F> for Encoded<F> {
+    const SPLITS: bool = false;
     const COLUMNS: &'static [Column] = &[
         Column {
             name: "encoder_count",

@@ -7,7 +7,9 @@ use crepitus_model::control::device_limits::LimitSettings;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::effects::symptom::Change;
-use crepitus_model::render::effects::{EffectSpec, Effects, SwitchedEffects};
+use crepitus_model::render::effects::{
+    EffectSettings, EffectSpec, Effects, SwitchedEffects, Timing,
+};
 use crepitus_model::render::input_check::{Checked, InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
 use crepitus_model::render::position::Position;
@@ -88,6 +90,66 @@ pub(super) fn listed(scene: &Scene) -> impl Iterator<Item = &'static EffectSpec>
         })
 }
 
+/// Numbers for ticks of another length.
+pub(super) struct Retiming {
+    joint: Option<Validated<Settings>>,
+    effects: EffectSettings,
+    timing: Timing,
+    /// Number of these ticks in one of those before.
+    ratio: f64,
+}
+
+impl Retiming {
+    pub(super) fn new(scene: &Scene, step_s: f64) -> Self {
+        Self {
+            joint: scene.crepitus.map(|crepitus| crepitus.settings),
+            effects: scene.effect_settings(),
+            timing: scene.timing(step_s, BARE_DELAY_TICKS),
+            ratio: 1.0,
+        }
+    }
+
+    /// Makes it that from the ticks so far to ticks of this length.
+    pub(super) fn ticks_of(&mut self, step_s: f64) {
+        self.ratio = self.timing.step_s / step_s;
+        self.timing.step_s = step_s;
+    }
+}
+
+/// A stage whose ticks can be of any length: one of a bare solver. The drive's never change.
+pub(super) trait InParts: Sized {
+    /// Goes on in ticks of another length.
+    fn retime(&mut self, _to: &Retiming) {}
+
+    /// Ends a part of a tick that began as `before`.
+    fn forget_part(&mut self, _before: &Self) {}
+}
+
+impl InParts for () {}
+
+impl<F: Real, L: Locate<F, Shape = Linear>> InParts for Crepitus<F, L> {}
+
+impl<F: Real> InParts for SwitchedEffects<F> {}
+
+impl<F: Real> InParts for Bare<AnyJoint<F>> {
+    fn retime(&mut self, to: &Retiming) {
+        let made = to.joint.as_ref().map(|j| StepCoefficients::new(j, to.timing.step_s));
+        if let Some(Ok(coefficients)) = made {
+            self.0.change_step(coefficients);
+        }
+    }
+}
+
+impl<F: Real> InParts for Effects<F> {
+    fn retime(&mut self, to: &Retiming) {
+        Self::retime(self, &to.effects, &to.timing, to.ratio);
+    }
+
+    fn forget_part(&mut self, before: &Self) {
+        Self::forget_part(self, before);
+    }
+}
+
 /// A pipeline of any stages.
 pub(super) trait Rendering<F> {
     /// See [`Pipeline::tick_observed`].
@@ -97,6 +159,19 @@ pub(super) trait Rendering<F> {
         on_event: &mut dyn FnMut(Event<F>),
         on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
     ) -> Shown<F>;
+
+    /// One part of a tick: at the end of it, if it is not the last, stages that know whole ticks
+    /// only are as before. `jump_nm` is what the parts before it had of jumps.
+    fn tick_part(
+        &mut self,
+        seen: &Seen<F>,
+        part: (&Retiming, bool, F),
+        on_event: &mut dyn FnMut(Event<F>),
+        on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
+    ) -> Shown<F>;
+
+    /// Goes on in ticks of another length.
+    fn retime(&mut self, to: &Retiming);
 
     /// See [`Addition::rest`].
     fn rest(&mut self, place: &Position<F>);
@@ -108,10 +183,40 @@ pub(super) trait Rendering<F> {
 impl<F: Real, I, S, E, L> Rendering<F> for Pipeline<F, I, S, E, L>
 where
     I: Check<F>,
-    S: Symptom<F>,
-    E: Addition<F>,
+    S: Symptom<F> + InParts,
+    E: Addition<F> + InParts + Clone,
     L: Limits<F>,
 {
+    fn tick_part(
+        &mut self,
+        seen: &Seen<F>,
+        (to, is_last, jump_nm): (&Retiming, bool, F),
+        on_event: &mut dyn FnMut(Event<F>),
+        mut on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
+    ) -> Shown<F> {
+        self.retime(to);
+        let before = (!is_last).then(|| self.effects.clone());
+        let mut shown = Shown {
+            jump_nm,
+            ..Shown::nothing()
+        };
+        let input = self.check.check(&seen.sample);
+        let torque = self.symptoms.tick(&input, &mut shown, on_event);
+        shown.torque_nm = torque.shown_nm;
+        shown.model_torque_nm = torque.model_nm;
+        self.effects.tick(seen, &input, &mut shown, &mut on_change);
+        self.limits.tick(&mut shown);
+        if let Some(before) = before {
+            self.effects.forget_part(&before);
+        }
+        shown
+    }
+
+    fn retime(&mut self, to: &Retiming) {
+        self.symptoms.retime(to);
+        self.effects.retime(to);
+    }
+
     #[inline]
     fn tick(
         &mut self,

@@ -8,7 +8,7 @@ use super::{Diverged, RunError, Totals, steps};
 use crate::any_joint::{AnyJoint, Precise};
 use crate::scene::Scene;
 use crate::trace::EventRecord;
-use crate::walk::Walk;
+use crate::walk::{Part, Walk};
 use crepitus_model::joint::StepCoefficients;
 use crepitus_model::solver::Solver;
 use crepitus_model::{
@@ -101,7 +101,7 @@ fn step_joint<F: Real, S: Sensor<F>>(
     let (steps, every) = steps(scene);
     let wants_rows = watch.wants_rows();
     let step_s = scene.step_s();
-    let mut walk = Walk::new(&scene.motion, step_s);
+    let mut walk = Walk::new(&scene.motion, step_s).in_parts::<F>();
     let mut accounting = StepAccounting::new::<F>(settings, step_s, walk.now().omega_rad_s);
     let mut row = Vec::new();
     let mut fastest_rad_s = walk.now().omega_rad_s.abs();
@@ -139,7 +139,19 @@ fn step_joint<F: Real, S: Sensor<F>>(
             break;
         }
         let start_s = walk.time_s();
-        let (from, to) = walk.step();
+        let whole = if S::SPLITS {
+            walk.step_or_parts()
+        } else {
+            Some(walk.step())
+        };
+        let Some((from, to)) = whole else {
+            for part in walk.parts() {
+                fastest_rad_s = fastest_rad_s.max(part.to.omega_rad_s.abs());
+            }
+            let parts = (start_s, walk.parts());
+            step_in_parts(parts, settings, &mut sensor, &mut joint, &mut accounting, watch)?;
+            continue;
+        };
         fastest_rad_s = fastest_rad_s.max(to.omega_rad_s.abs());
         let seen = sensor.see(&from, &to);
         let mut result = Ok(());
@@ -163,11 +175,49 @@ fn step_joint<F: Real, S: Sensor<F>>(
     })
 }
 
+/// One step of a joint, in the parts that the motion breaks it into; its coefficients are of a
+/// length, so each part has its own.
+#[cold]
+fn step_in_parts<F: Real, S: Sensor<F>>(
+    (start_s, parts): (f64, &[Part]),
+    settings: &Validated<Settings>,
+    sensor: &mut S,
+    joint: &mut AnyJoint<F>,
+    accounting: &mut StepAccounting,
+    watch: &mut dyn Watch,
+) -> Result<(), Ended> {
+    let whole = *joint.coefficients();
+    let mut time_s = start_s;
+    for (left, part) in (0..parts.len()).rev().zip(parts) {
+        joint.change_step(StepCoefficients::new(settings, part.length_s)?);
+        let seen = sensor.see(&part.from, &part.to);
+        let step_s = std::mem::replace(&mut accounting.step_s, part.length_s);
+        let mut result = Ok(());
+        joint.step(&seen, |event| {
+            let record = accounting.event(time_s, &seen, &event);
+            if result.is_ok() {
+                result = watch.event(&record);
+            }
+        });
+        result?;
+        if left > 0 {
+            accounting.end_part(&seen, joint);
+        } else {
+            accounting.end_step(&seen, joint);
+        }
+        accounting.step_s = step_s;
+        time_s += part.length_s;
+    }
+    joint.change_step(whole);
+    Ok(())
+}
+
 /// Keeps the tally of a stepping run: where in the step it is, and what the
 /// joint has seen of the shaft.
 pub(super) struct StepAccounting {
     pub(super) tally: Tally,
-    step_s: f64,
+    /// Length of the step, or of the part of one that is being accounted for, s.
+    pub(super) step_s: f64,
     /// Angle of the shaft as the joint has seen it, at the start of the step.
     pub(super) phi_rad: f64,
     /// The last point of the step that is booked, as a fraction of it.
@@ -233,10 +283,7 @@ impl StepAccounting {
     #[inline]
     pub(super) fn end_step<F: Real, J: StickSlip<F>>(&mut self, seen: &ShaftStep<F>, joint: &J) {
         match joint.phase() {
-            Phase::Stick => {
-                self.tally.shown(joint.torque_nm().to_f64());
-                self.book_stick(seen, 1.0, joint.theta_rad().to_f64());
-            }
+            Phase::Stick => self.end_stick(seen, joint),
             Phase::Slip(_) => {
                 if self.tally.lead.is_due() {
                     let (omega, v) = (seen.omega_end_rad_s, joint.theta_dot_rad_s());
@@ -245,6 +292,27 @@ impl StepAccounting {
                 }
             }
         }
+        self.close(seen);
+    }
+
+    /// Accounts for the rest of a part of a step that is not its last: looks at a slip are a
+    /// number of steps apart.
+    #[cold]
+    pub(super) fn end_part<F: Real, J: StickSlip<F>>(&mut self, seen: &ShaftStep<F>, joint: &J) {
+        if joint.phase() == Phase::Stick {
+            self.end_stick(seen, joint);
+        }
+        self.close(seen);
+    }
+
+    #[inline]
+    fn end_stick<F: Real, J: StickSlip<F>>(&mut self, seen: &ShaftStep<F>, joint: &J) {
+        self.tally.shown(joint.torque_nm().to_f64());
+        self.book_stick(seen, 1.0, joint.theta_rad().to_f64());
+    }
+
+    #[inline]
+    fn close<F: Real>(&mut self, seen: &ShaftStep<F>) {
         self.crowded_steps += u64::from(self.in_step >= EVENTS_PER_STEP);
         self.in_step = 0;
         self.booked = 0.0;

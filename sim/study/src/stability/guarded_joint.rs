@@ -36,6 +36,10 @@ impl<F: Real, J: StickSlip<F>> StickSlip<F> for GuardedJoint<F, J> {
         self.0.joint_mut().restart(torque_nm, omega_rad_s);
     }
 
+    fn change_step(&mut self, coefficients: StepCoefficients<F>) {
+        self.0.joint_mut().change_step(coefficients);
+    }
+
     fn coefficients(&self) -> &StepCoefficients<F> {
         self.0.joint().coefficients()
     }

@@ -118,6 +118,12 @@ impl<F: Real> Caught<F> {
         }
     }
 
+    pub(super) fn retime(&mut self, s: &SpasticitySettings, timing: &Timing) {
+        let share = timing.step_s / s.release_s;
+        self.with.rate = F::from_f64(-share);
+        self.with.lost = F::from_f64(-libm::expm1(-share));
+    }
+
     pub(super) fn release(&mut self, slew_nm: F) {
         self.play.release(slew_nm);
         self.torque_nm = self.with.threshold.sense * self.play.torque_nm();

@@ -138,6 +138,14 @@ impl<F: Real> Reflex<F> {
         }
     }
 
+    /// Answers as it did before a part of a tick, which has no place of its own in its memory: the
+    /// answer to the last part is that to the tick.
+    pub(super) fn forget_part(&mut self, before: &Self) {
+        let drive = self.drive;
+        *self = *before;
+        self.drive = drive;
+    }
+
     pub(super) fn release(&mut self, slew_nm: F) {
         let answer_nm = self.delayed_nm + self.lag_nm;
         self.lag_nm -= answer_nm.within(slew_nm);
