@@ -7,7 +7,7 @@ use crepitus_model::control::device_limits::LimitSettings;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::effects::symptom::Change;
-use crepitus_model::render::effects::{EffectSpec, Effects, SwitchedEffects};
+use crepitus_model::render::effects::{EffectSpec, Effects, Observe, SwitchedEffects};
 use crepitus_model::render::input_check::{Checked, InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
 use crepitus_model::render::position::Position;
@@ -26,7 +26,7 @@ pub(super) type BareStages<F, S> = Pipeline<F, (), S, Effects<F>>;
 
 /// Stages of the drive; its symptoms are always those of the firmware.
 pub(super) type DriveStages<F, S> =
-    Pipeline<F, InputCheck<F>, S, SwitchedEffects<F>, TorqueLimits<F>>;
+    Pipeline<F, InputCheck<F>, S, SwitchedEffects<F>, Remembering<F>>;
 
 /// Returns the stages around a bare solver, or around nothing.
 pub(super) fn bare<F: Real, S: Symptom<F>>(
@@ -57,7 +57,10 @@ pub(super) fn drive<F: Real, S: Symptom<F>>(
         InputCheck::new(&InputLimits::device(step_s), F::from_f64(step_s), F::ZERO),
         symptoms,
         effects,
-        TorqueLimits::armed(F::from_f64(limits.torque_nm), slew_nm),
+        Remembering {
+            limits: TorqueLimits::armed(F::from_f64(limits.torque_nm), slew_nm),
+            asked_nm: F::ZERO,
+        },
     ))
 }
 
@@ -88,6 +91,62 @@ pub(super) fn listed(scene: &Scene) -> impl Iterator<Item = &'static EffectSpec>
         })
 }
 
+/// Report of a symptom from within a tick.
+pub(super) enum Notice<F> {
+    /// An event of it.
+    Change(Change<F>),
+    /// It asks for a torque, and the tank pays so much of it, N·m.
+    Paid { asked_nm: F, paid_nm: F },
+}
+
+/// Passes reports on. Not a closure: the effects would be compiled for that of each pipeline.
+struct Reports<'a, F>(&'a mut dyn FnMut(&'static EffectSpec, Notice<F>));
+
+impl<F: Real> Observe<F> for Reports<'_, F> {
+    const LISTENS: bool = true;
+
+    fn change(&mut self, effect: &'static EffectSpec, change: Change<F>) {
+        (self.0)(effect, Notice::Change(change));
+    }
+
+    fn paid(&mut self, effect: &'static EffectSpec, asked_nm: F, paid_nm: F) {
+        (self.0)(effect, Notice::Paid { asked_nm, paid_nm });
+    }
+}
+
+/// Limits of a device that remember the torque before them.
+pub(super) struct Remembering<F> {
+    limits: TorqueLimits<F>,
+    asked_nm: F,
+}
+
+impl<F: Real> Limits<F> for Remembering<F> {
+    #[inline]
+    fn tick(&mut self, shown: &mut Shown<F>) {
+        self.asked_nm = shown.torque_nm;
+        self.limits.tick(shown);
+    }
+}
+
+/// Torque before the limits of a device.
+pub(super) trait Asked<F>: Limits<F> {
+    /// The torque that came in, N·m; none where there are no limits.
+    fn asked_nm(&self) -> Option<F>;
+}
+
+impl<F> Asked<F> for () {
+    fn asked_nm(&self) -> Option<F> {
+        None
+    }
+}
+
+impl<F: Real> Asked<F> for Remembering<F> {
+    #[inline]
+    fn asked_nm(&self) -> Option<F> {
+        Some(self.asked_nm)
+    }
+}
+
 /// A pipeline of any stages.
 pub(super) trait Rendering<F> {
     /// See [`Pipeline::tick_observed`].
@@ -95,8 +154,11 @@ pub(super) trait Rendering<F> {
         &mut self,
         seen: &Seen<F>,
         on_event: &mut dyn FnMut(Event<F>),
-        on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
+        on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
     ) -> Shown<F>;
+
+    /// Torque before the limits of a device, N·m; none without a device.
+    fn asked_nm(&self) -> Option<F>;
 
     /// See [`Addition::rest`].
     fn rest(&mut self, place: &Position<F>);
@@ -110,17 +172,21 @@ where
     I: Check<F>,
     S: Symptom<F>,
     E: Addition<F>,
-    L: Limits<F>,
+    L: Asked<F>,
 {
     #[inline]
     fn tick(
         &mut self,
         seen: &Seen<F>,
         on_event: &mut dyn FnMut(Event<F>),
-        mut on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
+        on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
     ) -> Shown<F> {
-        // Not a closure: the effects would be compiled for that of each pipeline.
-        self.tick_observed(seen, on_event, &mut on_change)
+        self.tick_observed(seen, on_event, &mut Reports(on_notice))
+    }
+
+    #[inline]
+    fn asked_nm(&self) -> Option<F> {
+        self.limits.asked_nm()
     }
 
     fn rest(&mut self, place: &Position<F>) {
