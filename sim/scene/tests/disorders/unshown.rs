@@ -101,15 +101,18 @@ fn beats_that_the_tank_holds_back_are_marked_counted_and_warned_of() {
         let beats = found.events.iter().filter(|e| e.word == Word::Beat);
         let beats = u64::try_from(beats.count()).expect("few");
         let tank = summary.tank.as_ref().expect("clonus gives energy");
-        // One beat of about half the height, one of next to nothing.
-        let [(weak, asked_nm, weak_nm), (unfelt, _, unfelt_nm)] = held_back[..] else {
-            panic!("{held_back:?}");
-        };
-        assert_eq!((weak, unfelt), (Word::Weak, Word::Unfelt));
-        assert!((asked_nm - 1.5).abs() < 1e-3, "{asked_nm}");
-        assert!((0.75..0.8).contains(&weak_nm), "{weak_nm}");
-        assert!((0.05..0.15).contains(&unfelt_nm), "{unfelt_nm}");
-        assert_eq!((tank.weak, tank.unfelt), (1, 1));
+        // In each of two stretches a beat of about half the height, and one of next to nothing.
+        assert_eq!(held_back.len(), 4);
+        for pair in held_back.chunks(2) {
+            let [(weak, asked_nm, weak_nm), (unfelt, _, unfelt_nm)] = pair[..] else {
+                panic!("{held_back:?}");
+            };
+            assert_eq!((weak, unfelt), (Word::Weak, Word::Unfelt));
+            assert!((asked_nm - 1.5).abs() < 1e-3, "{asked_nm}");
+            assert!((0.75..0.8).contains(&weak_nm), "{weak_nm}");
+            assert!((0.05..0.15).contains(&unfelt_nm), "{unfelt_nm}");
+        }
+        assert_eq!((tank.weak, tank.unfelt), (2, 2));
         assert!(
             (beats - 1..=beats).contains(&tank.pushes),
             "{beats} {tank:?}"
@@ -118,7 +121,7 @@ fn beats_that_the_tank_holds_back_are_marked_counted_and_warned_of() {
         let words = format!("from t = {first_s:.4} s on");
         let text = warning(&summary, "energy tank held back torque of clonus");
         assert!(
-            text.contains(&words) && text.contains("1 were weak and 1 not felt"),
+            text.contains(&words) && text.contains("2 were weak and 2 not felt"),
             "{text}"
         );
         assert_eq!(solver == REFERENCE, text.contains("continuous law"));
@@ -175,7 +178,7 @@ fn the_ladders_tank_converges_to_the_continuous_law_with_its_step() {
         let ratio = pair[0] / pair[1];
         assert!((1.7..2.4).contains(&ratio), "{errors:?}");
     }
-    assert!(errors[2] < 2e-3, "{errors:?}");
+    assert!(errors[2] < 8e-3, "{errors:?}");
 }
 
 /// A lead-pipe, a wall and crepitus that ask for twice what a device shows.
