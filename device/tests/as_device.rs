@@ -294,11 +294,11 @@ fn symptoms_and_their_phases_are_those_of_the_scene_on_the_same_counts() {
 }
 
 /// Compares every tick; returns the ticks with each limit, unless the drive disarmed.
-fn compare(name: &str, scene: &Scene) -> Option<[u32; 8]> {
+fn compare(name: &str, scene: &Scene) -> Option<[u32; 10]> {
     let rows = rows(scene);
     let bench = drive(scene, &rows);
     assert_eq!(bench.rendered.len(), rows.len(), "{name}");
-    let mut limits = [0_u32; 8];
+    let mut limits = [0_u32; 10];
     for (n, (row, rendered)) in rows.iter().zip(&bench.rendered).enumerate() {
         // A shaft that jumps to its speed is more than the winding can take.
         if rendered.flags.limit() == LimitReason::NotArmed {
@@ -331,6 +331,7 @@ fn a_limit_has_the_number_that_it_has_on_the_wire() {
         (Limit::TurnedBack, LimitReason::TurnedBack),
         (Limit::Holding, LimitReason::Holding),
         (Limit::NotArmed, LimitReason::NotArmed),
+        (Limit::Tank, LimitReason::Tank),
     ] {
         assert_eq!(SampleFlags::default().with_limit(reason).limit(), reason);
         assert_eq!(limit as u8, reason as u8);

@@ -32,7 +32,7 @@ use input_check::{Checked, Sample};
 use position::Position;
 
 /// Reason why the torque shown is not the one that the model asks for. The numbers
-/// are those of the wire, where the motor has 3 and 4.
+/// are those of the wire, where the motor has 3, 4 and 8.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Limit {
@@ -50,6 +50,8 @@ pub enum Limit {
     Holding = 6,
     /// There is no torque: the device is not armed.
     NotArmed = 7,
+    /// The [tank](effects::tank) holds back torque of symptoms that give energy.
+    Tank = 9,
 }
 
 /// Output of a tick; each stage changes it in turn.
@@ -63,6 +65,9 @@ pub struct Shown<F> {
     pub jump_nm: F,
     /// Torque of the symptoms that give energy, which a tank pays, N·m.
     pub active_nm: F,
+    /// Share of the torque asked for by symptoms that give energy that their tank holds
+    /// back, 0 to 1; 0 while they ask for none.
+    pub held_back: F,
     /// Torque of the symptoms that the actuator on the shell alone gets, N·m.
     pub shell_nm: F,
     /// Voltage at the coil of that actuator, V: V > 0 pushes the shell towards growing
@@ -88,6 +93,7 @@ impl<F: Real> Shown<F> {
             model_torque_nm: self.model_torque_nm.to_f64(),
             jump_nm: self.jump_nm.to_f64(),
             active_nm: self.active_nm.to_f64(),
+            held_back: self.held_back.to_f64(),
             shell_nm: self.shell_nm.to_f64(),
             coil_v: self.coil_v.to_f64(),
             added: self.added.to_f64(),
@@ -106,6 +112,7 @@ impl<F: Real> Shown<F> {
             model_torque_nm: F::ZERO,
             jump_nm: F::ZERO,
             active_nm: F::ZERO,
+            held_back: F::ZERO,
             shell_nm: F::ZERO,
             coil_v: F::ZERO,
             added: Added::NONE,

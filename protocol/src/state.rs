@@ -57,6 +57,8 @@ crepitus_model::named! {
         NotArmed => "not-armed",
         /// End of the range of motion: the torque fades, or is off.
         Range => "range",
+        /// Energy tank: less than a clonus or a reflex asks for.
+        Tank => "tank",
     }
 }
 
@@ -73,6 +75,7 @@ impl LimitReason {
             Self::Holding => 6,
             Self::NotArmed => 7,
             Self::Range => 8,
+            Self::Tank => 9,
         }
     }
 }

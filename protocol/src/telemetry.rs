@@ -9,8 +9,8 @@
 //! phases = u16                                                                      2 bytes, little endian
 //! coil   = i16, the mean of 5 ticks in mA                                           2 bytes, little endian
 //!
-//! flags    15 … 12   11     10     9       8 7 6 5   4          3      2         1 0
-//!          0         late   stick  break   limited   energised  lost   settling  phase
+//! flags    15 14 13    12     11     10     9       8 7 6 5   4          3      2         1 0
+//!          held back   chirp  late   stick  break   limited   energised  lost   settling  phase
 //! ```
 //!
 //! Angles and speeds follow from the counts: an encoder's count is
@@ -117,7 +117,7 @@ impl CoilCurrent {
     }
 }
 
-/// Per-sample flags, 16 bits; those without a name are reserved, and 0.
+/// Per-sample flags, 16 bits.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, MaxSize, Schema,
 )]
@@ -144,6 +144,10 @@ impl SampleFlags {
     pub const LATE: u16 = 1 << 11;
     /// The coil of the vibration actuator plays a chirp; the first such tick is its first.
     pub const CHIRP: u16 = 1 << 12;
+    /// The [share](Self::held_back) that the energy tank holds back.
+    pub const HELD_BACK: u16 = 0b111 << Self::HELD_BACK_SHIFT;
+    /// Lowest bit of that share.
+    pub const HELD_BACK_SHIFT: u32 = 13;
 
     /// Returns the flags with these bits set or cleared.
     #[must_use]
@@ -181,6 +185,39 @@ impl SampleFlags {
     pub fn with_limit(self, reason: LimitReason) -> Self {
         let place = 0b1111 << Self::LIMIT_SHIFT;
         Self(self.0 & !place | reason.number() << Self::LIMIT_SHIFT)
+    }
+
+    /// Returns the flags with this share, 0 to 1, of the torque of clonus and of a reflex that the
+    /// energy tank holds back. It is rounded up to eighths, and 7 stands for all above 6/8.
+    #[inline]
+    #[must_use]
+    pub fn with_held_back(self, share: f32) -> Self {
+        if share > 0.0 {
+            self.with_eighths(share)
+        } else {
+            Self(self.0 & !Self::HELD_BACK)
+        }
+    }
+
+    #[cold]
+    fn with_eighths(self, share: f32) -> Self {
+        let eighths = share * 8.0;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a share; saturates"
+        )]
+        let whole = eighths as u16;
+        let number = whole
+            .saturating_add(u16::from(f32::from(whole) < eighths))
+            .min(7);
+        Self(self.0 & !Self::HELD_BACK | number << Self::HELD_BACK_SHIFT)
+    }
+
+    /// Eighths of the torque of clonus and of a reflex that the energy tank holds back, rounded
+    /// up; 7 for more than six.
+    pub fn held_back(self) -> u16 {
+        self.0 >> Self::HELD_BACK_SHIFT
     }
 
     /// Reason why the torque differs from the model's.
@@ -441,6 +478,24 @@ mod tests {
                 assert!(flags.has(SampleFlags::LATE));
                 assert!(!flags.has(SampleFlags::BREAK | SampleFlags::SETTLING));
             }
+        }
+        for (share, eighths) in [
+            (0.0, 0),
+            (1e-30, 1),
+            (0.125, 1),
+            (0.126, 2),
+            (0.5, 4),
+            (0.500_001, 5),
+            (0.875, 7),
+            (1.0, 7),
+            (f32::INFINITY, 7),
+            (-0.1, 0),
+            (f32::NAN, 0),
+        ] {
+            let before = SampleFlags(SampleFlags::CHIRP | SampleFlags::HELD_BACK);
+            let flags = before.with_held_back(share);
+            assert_eq!(flags.held_back(), eighths, "{share}");
+            assert!(flags.has(SampleFlags::CHIRP));
         }
         for state in State::ALL {
             for (zeroed, start) in [(false, 0), (true, 31), (true, 0xff03)] {

@@ -158,7 +158,7 @@ impl Rendering {
     }
 }
 
-/// Adds phase, ramp and limit to the flags.
+/// Adds phase, ramp, limit and the share held back to the flags.
 #[inline]
 fn with(flags: SampleFlags, shown: &Shown<f32>) -> SampleFlags {
     flags
@@ -171,5 +171,7 @@ fn with(flags: SampleFlags, shown: &Shown<f32>) -> SampleFlags {
             Limit::TurnedBack => LimitReason::TurnedBack,
             Limit::Holding => LimitReason::Holding,
             Limit::NotArmed => LimitReason::NotArmed,
+            Limit::Tank => LimitReason::Tank,
         })
+        .with_held_back(shown.held_back)
 }

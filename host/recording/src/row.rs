@@ -36,11 +36,12 @@ pub const COLUMNS: [(&str, &str); 14] = [
     ("revision", "of the parameters in force"),
     (
         "limit",
-        "why the torque is not the model's: none, torque, slew, current, voltage, turned-back, holding, not-armed",
+        "why the torque is not the model's: none, torque, slew, current, voltage, turned-back, holding, not-armed, range, tank",
     ),
     (
         "notes",
-        "settling: parameters are ramping; lost: count rejected; late: rendering was late; EFFECT:PHASE: an effect that is not at rest",
+        "settling: parameters are ramping; lost: count rejected; late: rendering was late; tank:N: eighths of the torque of clonus and reflex that the tank holds back; \
+         EFFECT:PHASE: an effect that is not at rest",
     ),
 ];
 
@@ -98,6 +99,9 @@ pub(crate) const NOTES: [(u16, &str); 4] = [
     (SampleFlags::LATE, "late"),
     (SampleFlags::CHIRP, "chirp"),
 ];
+
+/// Name of the note of the share that the tank holds back.
+pub(crate) const HELD_BACK: &str = "tank";
 
 impl Row {
     /// The step from the row before it.
@@ -168,6 +172,11 @@ impl Row {
                 line.push_str(name);
                 separator = "+";
             }
+        }
+        let held_back = self.flags.held_back();
+        if held_back > 0 {
+            let _ = write!(line, "{separator}{HELD_BACK}:{held_back}");
+            separator = "+";
         }
         for (effect, phase) in self.phases.named() {
             let _ = write!(line, "{separator}{}:{phase}", effect.name);

@@ -224,7 +224,7 @@ fn beats(found: &Found, settings: Option<&ClonusSettings>, rows: &mut Vec<Row>) 
     }
 }
 
-/// Number of beats, their duration, and the grade that the Spinal Cord Assessment Tool for
+/// Number of beats, the duration of those that were felt, and the grade that the Spinal Cord Assessment Tool for
 /// Spastic Reflexes gives for that. Where the torque is of more than clonus, beats cannot be
 /// distinguished, and the phases of clonus say how long it lasted.
 fn lasted(bout: &Bout, beats_are_counted: bool) -> String {
@@ -242,7 +242,7 @@ fn lasted(bout: &Bout, beats_are_counted: bool) -> String {
         }
     }
     let (grade, words) = match length_s {
-        _ if beats_are_counted && bout.beats == 0 => (0, "no reaction"),
+        _ if beats_are_counted && bout.felt == 0 => (0, "no reaction"),
         s if s < 3.0 => (1, "mild, less than 3 s"),
         s if s <= 10.0 => (2, "moderate, 3 to 10 s"),
         _ => (3, "severe, more than 10 s"),
@@ -251,6 +251,12 @@ fn lasted(bout: &Bout, beats_are_counted: bool) -> String {
         _ if !beats_are_counted => "beats that cannot be told apart".to_owned(),
         1 => "1 beat".to_owned(),
         n => format!("{n} beats"),
+    };
+    let beats = match bout.beats - bout.felt {
+        unfelt @ 1.. if beats_are_counted => {
+            format!("{beats}, {unfelt} not felt as less than half the height was there,")
+        }
+        _ => beats,
     };
     let end = match bout.end {
         Some((Word::Done, _)) => "ended by itself;",
@@ -299,6 +305,7 @@ mod tests {
         Bout {
             start,
             beats,
+            felt: beats,
             last_s,
             end,
         }
@@ -353,5 +360,19 @@ mod tests {
         ] {
             assert_eq!(lasted(&bout, are_told), expected);
         }
+    }
+
+    #[test]
+    fn beats_that_were_not_felt_are_in_no_grade() {
+        let done = Some((Word::Done, 5.2));
+        let of = |felt, last_s| Bout {
+            felt,
+            ..bout(20, last_s, done)
+        };
+        assert_eq!(
+            lasted(&of(12, 3.0), true),
+            "20 beats, 8 not felt as less than half the height was there, in 2.0 s, ended by itself; SCATS 1: mild, less than 3 s"
+        );
+        assert!(lasted(&of(0, 1.0), true).ends_with("SCATS 0: no reaction"));
     }
 }

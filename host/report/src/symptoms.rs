@@ -17,7 +17,7 @@ pub(crate) mod words;
 pub(crate) mod tests;
 
 use crate::channels::{Sample, Setup};
-use crepitus_model::render::effects::EffectSettings;
+use crepitus_model::render::effects::{EffectSettings, FELT_SHARE};
 use crepitus_scene::trace::{Column, SymptomEvent, Word};
 use found::Found;
 use path::Path;
@@ -62,13 +62,14 @@ pub(crate) struct Symptoms {
 }
 
 impl Symptom {
-    fn new(words: Words, places: Places) -> Self {
+    fn new(words: Words, places: Places, effects: &EffectSettings) -> Self {
+        let beat_nm = effects.clonus.map_or(0.0, |clonus| clonus.beat_nm().abs());
         Self {
             words,
             places,
             path: Path::new(),
             timeline: Timeline::new(),
-            found: Found::new(places.torque.is_some()),
+            found: Found::new(places.torque.is_some(), FELT_SHARE * beat_nm),
             state: None,
             last_nm: 0.0,
         }
@@ -152,6 +153,10 @@ impl Symptom {
 
     /// An event that a run reports.
     fn event(&mut self, event: &SymptomEvent) {
+        // Its torques are of a whole beat: those of the rows show it.
+        if matches!(event.word, Word::Weak | Word::Unfelt) {
+            return;
+        }
         if self.places.phase.is_none()
             && let Some(state) = self.words.state_after(event.word)
         {
@@ -187,7 +192,7 @@ impl Symptoms {
             };
             let of_all = places.phase.is_some() && total.is_some();
             if places.torque.is_some() || of_all {
-                list.push(Symptom::new(words, places));
+                list.push(Symptom::new(words, places, &setup.effects));
             }
         }
         // The torque of all is its own where there is nothing else, crepitus neither.

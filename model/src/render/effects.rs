@@ -187,6 +187,10 @@ pub trait Observe<F> {
 
     /// Something has happened to this effect.
     fn change(&mut self, effect: &'static EffectSpec, change: Change<F>);
+
+    /// In this tick a symptom that gives energy asks for a torque, and the tank pays so much
+    /// of it, N·m.
+    fn paid(&mut self, _: &'static EffectSpec, _asked_nm: F, _paid_nm: F) {}
 }
 
 impl<F> Observe<F> for () {
@@ -211,6 +215,10 @@ pub const TANK_J: f64 = 0.2;
 /// Power that all symptoms that are no springs may return continuously, W: in any 2 s at most 0.28 J, with
 /// a bone's ringing less than the half joule that a device may give a leg.
 pub const TANK_REFILL_W: f64 = 0.04;
+
+/// Share of the height of a beat, or of a reflex, that has to reach the motor for it to count as
+/// felt: below half of it, what is felt is another knee's.
+pub const FELT_SHARE: f64 = 0.5;
 
 /// Destination of an effect's contribution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -315,10 +323,12 @@ impl<F: Real, L: Law<Real = F>> DeviceEffect<F> for L {
         let mut besides = Besides::NOTHING;
         let mut nm = law_nm(self, tick.travel, &mut besides, observe);
         if self.is_active() {
-            nm = tick.paid_share * nm;
+            let asked_nm = nm;
+            nm = besides.pay(asked_nm, tick.paid_share);
             besides.active_nm = nm;
+            observe.paid(const { &<L as Law>::SPEC }, asked_nm, nm);
         }
-        besides.add_to(shown);
+        besides.add_to(tick.paid_share, shown);
         nm
     }
 

@@ -6,7 +6,7 @@ use crepitus_model::render::effects::{
 };
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
 use crepitus_model::render::position::{Position, Sight};
-use crepitus_model::render::{Addition, Check, Seen, Shown};
+use crepitus_model::render::{Addition, Check, Limit, Seen, Shown};
 use crepitus_model::{Real, Sample, ShaftStep};
 
 pub(crate) const TICK_S: f64 = 5e-5;
@@ -34,6 +34,10 @@ pub(crate) struct Rig<F: Real> {
     phases: Phases,
     /// Jump of the torque in the last tick, N·m.
     pub(crate) jump_nm: f64,
+    /// Reason before the symptoms of the next tick, and after those of the last one.
+    pub(crate) limit: Limit,
+    /// Share that the tank held back in the last tick.
+    pub(crate) held_back: f64,
 }
 
 impl<F: Real> Rig<F> {
@@ -49,6 +53,8 @@ impl<F: Real> Rig<F> {
             settling: false,
             phases: Phases::default(),
             jump_nm: 0.0,
+            limit: Limit::None,
+            held_back: 0.0,
         };
         rig.commit(settings);
         rig.effects.rest(&sight.position(from_rad));
@@ -70,7 +76,10 @@ impl<F: Real> Rig<F> {
             place,
             is_driven: true,
         };
-        let mut shown = Shown::nothing();
+        let mut shown = Shown {
+            limit: self.limit,
+            ..Shown::nothing()
+        };
         self.words.clear();
         self.torques_nm.clear();
         let (words, torques_nm) = (&mut self.words, &mut self.torques_nm);
@@ -86,6 +95,8 @@ impl<F: Real> Rig<F> {
         self.settling = shown.settling;
         self.phases = shown.phases;
         self.jump_nm = shown.jump_nm.to_f64();
+        self.limit = shown.limit;
+        self.held_back = shown.held_back.to_f64();
         shown.torque_nm.to_f64()
     }
 

@@ -1,6 +1,7 @@
 //! One tank pays for what gives energy, and for nothing else.
 
 use super::rig::*;
+use crepitus_model::render::Limit;
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::clasp_knife::ClaspKnifeSettings;
 use crepitus_model::render::effects::cogwheel::CogwheelSettings;
@@ -69,5 +70,40 @@ fn what_gives_no_energy_neither_fills_the_tank_nor_is_paid_from_it() {
             most_nm = most_nm.max(beside.2.abs());
         }
         assert!(most_nm > 0.2, "{most_nm}");
+    }
+}
+
+#[test]
+fn the_tank_is_named_where_it_holds_back_and_a_reason_of_the_joint_stands() {
+    let settings = EffectSettings {
+        spasticity: Some(SpasticitySettings {
+            form: 1,
+            threshold_deg: 60.0,
+            velocity_shift_s: 0.27,
+            gain_nm_per_rad: 15.0,
+            ..SpasticitySettings::default()
+        }),
+        lead_pipe: Some(LeadPipeSettings::default()),
+        ..EffectSettings::default()
+    };
+    for before in [Limit::None, Limit::TurnedBack] {
+        let mut rig = only::<f32>(settings, 1.05_f64.to_degrees());
+        let (mut ticks, mut most) = (0, 0.0_f64);
+        for n in 0..8_000 {
+            let from_s = f64::from(n) * TICK_S;
+            let (from, to) = (shaken(from_s), shaken(from_s + TICK_S));
+            rig.limit = before;
+            rig.step(from, to, to.0 - from.0);
+            let is_held_back = rig.held_back > 0.0;
+            let expected = match before {
+                Limit::None if is_held_back => Limit::Tank,
+                other => other,
+            };
+            assert_eq!(rig.limit, expected, "tick {n}");
+            assert!((0.0..=1.0).contains(&rig.held_back));
+            ticks += i32::from(is_held_back);
+            most = most.max(rig.held_back);
+        }
+        assert!(ticks > 200 && most > 0.5, "{ticks} {most}");
     }
 }

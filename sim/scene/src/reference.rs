@@ -27,6 +27,7 @@ mod repeat;
 mod rules;
 mod swing;
 pub mod symptoms;
+mod tank;
 
 pub use follow::Follow;
 

@@ -9,6 +9,7 @@ mod coupled;
 mod device;
 mod energy;
 mod event_driven;
+mod held_back;
 mod lead;
 mod probe;
 mod sensor;
@@ -19,11 +20,12 @@ mod tally;
 mod watch;
 
 pub use coupled::{FELT_COLUMN, STRUCK_COLUMN};
+pub use held_back::HELD_BACK_COLUMN;
 pub use lead::Lead;
 pub use probe::{AddedTime, StepTime, step_times};
 pub use summary::{
     CycleSummary, EffectSummary, EnergySummary, EventCounts, LeadSummary, ParameterValue,
-    SUMMARY_VERSION, Summary, TorqueSummary,
+    SUMMARY_VERSION, Summary, TankSummary, TorqueLimitSummary, TorqueSummary,
 };
 
 use crate::any_joint::Precise;
@@ -126,6 +128,10 @@ pub(crate) struct Totals {
     fastest_rad_s: f64,
     /// Steps with as many events as a step may have.
     crowded_steps: u64,
+    /// Torque that the tank held back.
+    tank: held_back::TankTotals,
+    /// Torque beyond the largest of a device.
+    beyond: held_back::Beyond,
     plant: Option<coupled::PlantTotals>,
 }
 
@@ -148,6 +154,7 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
     }
     if scene.solver == SolverChoice::Reference {
         columns.extend(stages::listed(scene).map(|spec| number(spec.column)));
+        columns.extend(scene.gives_energy().then(|| number(HELD_BACK_COLUMN)));
     }
     if scene.is_coupled()
         && let Ok(plant) = scene.assemble()
@@ -159,6 +166,7 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
                 kind: ColumnKind::Whole,
             }));
         }
+        columns.extend(scene.gives_energy().then(|| number(HELD_BACK_COLUMN)));
         if scene.is_device {
             columns.extend(device::COLUMNS);
         }

@@ -155,7 +155,8 @@ impl Bounds {
             LimitReason::None
             | LimitReason::Voltage
             | LimitReason::Current
-            | LimitReason::Range => 0.0,
+            | LimitReason::Range
+            | LimitReason::Tank => 0.0,
             _ => self.joint_nm,
         };
         let beside_nm = self.added_nm + joint_nm + ROUNDING_NM;

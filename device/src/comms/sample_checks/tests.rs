@@ -88,6 +88,7 @@ fn torque_that_the_model_does_not_give_is_a_fault() {
         (bounds(), torque(0.1, -0.1, LimitReason::None), beyond),
         (bounds(), torque(0.3, 0.1, LimitReason::Range), None),
         (bounds(), torque(0.3, 0.0, LimitReason::TurnedBack), None),
+        (bounds(), torque(0.1, 0.3, LimitReason::Tank), beyond),
         (bounds(), torque(0.1, 0.3, LimitReason::Holding), None),
         (compensated, torque(0.1, -0.3, LimitReason::None), None),
         (compensated, torque(0.1, -0.45, LimitReason::None), beyond),

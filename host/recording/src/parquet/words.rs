@@ -1,6 +1,6 @@
 //! The columns of words: phase, event, limit, notes.
 
-use crate::row::{NOTES, Row};
+use crate::row::{HELD_BACK, NOTES, Row};
 use crepitus_model::render::effects::Phases;
 use crepitus_protocol::LimitReason;
 use crepitus_protocol::telemetry::SampleFlags;
@@ -51,6 +51,9 @@ pub(super) fn read([phase, event, limit, notes]: &Words) -> io::Result<(SampleFl
     let mut phases = Phases::default();
     for note in notes.split('+').filter(|note| !note.is_empty()) {
         let known = match note.split_once(':') {
+            Some((HELD_BACK, eighths)) => (1..8_u16)
+                .find(|n| n.to_string() == eighths)
+                .map(|n| flags.0 |= n << SampleFlags::HELD_BACK_SHIFT),
             Some((effect, phase)) => phases
                 .with_named(effect, phase)
                 .map(|with_it| phases = with_it),
@@ -94,6 +97,8 @@ mod tests {
                 SampleFlags::LOST | SampleFlags::BREAK,
                 SampleFlags::BREAK | SampleFlags::STICK,
                 SampleFlags::STICK | SampleFlags::CHIRP,
+                SampleFlags::CHIRP | 1 << SampleFlags::HELD_BACK_SHIFT,
+                SampleFlags::LATE | 7 << SampleFlags::HELD_BACK_SHIFT,
             ] {
                 for sign in [-1, 0, 1] {
                     let flags = SampleFlags(bits)
@@ -123,6 +128,8 @@ mod tests {
             (3, "no-effect:contact"),
             (3, "bone-shaping:"),
             (3, "later"),
+            (3, "tank:0"),
+            (3, "tank:8"),
         ] {
             let mut words = good.clone();
             words[column] = word.to_owned();

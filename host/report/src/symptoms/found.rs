@@ -27,7 +27,9 @@ pub(crate) struct Met {
 pub(crate) struct Bout {
     pub(crate) start: SymptomEvent,
     pub(crate) beats: u32,
-    /// Time at which the last beat so far began, s.
+    /// Beats of which at least half the height was there.
+    pub(crate) felt: u32,
+    /// Time at which the last of those began, s.
     pub(crate) last_s: f64,
     /// Event that ended it, and its time, s.
     pub(crate) end: Option<(Word, f64)>,
@@ -49,6 +51,10 @@ pub(crate) struct Found {
     /// Whether a beat shows: not in the torque of several effects together.
     pub(crate) beats_are_counted: bool,
     pub(crate) beats: Vec<Beat>,
+    /// The least torque of a beat that is felt, N·m.
+    felt_nm: f64,
+    /// Time at which the last beat began, while it has less than that, s.
+    faint_s: Option<f64>,
     pub(crate) movement: Movement,
     pub(crate) loops: Loops,
     /// The largest torque in either sense, N·m, and the angle there, rad.
@@ -64,10 +70,11 @@ const SAME_NM: f64 = 0.005;
 const RELEASED: f64 = 0.9;
 
 impl Found {
-    /// Begins with nothing found.
-    pub(crate) fn new(beats_are_counted: bool) -> Self {
+    /// Begins with nothing found; a beat of this height counts as felt.
+    pub(crate) fn new(beats_are_counted: bool, felt_nm: f64) -> Self {
         Self {
             beats_are_counted,
+            felt_nm,
             ..Self::default()
         }
     }
@@ -92,6 +99,14 @@ impl Found {
         }
         if let Some(met) = self.met.last_mut() {
             met.row(time_s, angle_rad, nm);
+        }
+        if nm.abs() >= self.felt_nm
+            && nm != 0.0
+            && let Some(began_s) = self.faint_s.take()
+            && let Some(bout) = self.bouts.last_mut()
+        {
+            bout.felt += 1;
+            bout.last_s = began_s;
         }
     }
 
@@ -153,6 +168,7 @@ impl Found {
         self.bouts.push(Bout {
             start: *event,
             beats: 0,
+            felt: 0,
             last_s: event.time_s,
             end: None,
         });
@@ -171,7 +187,7 @@ impl Found {
             self.left_out += 1;
         }
         bout.beats += 1;
-        bout.last_s = event.time_s;
+        self.faint_s = Some(event.time_s);
     }
 
     /// Catches and onsets of a reflex.

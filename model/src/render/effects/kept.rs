@@ -101,17 +101,20 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
     /// Follows a sample while the motor is driven; returns the torque, N·m. Not inlined: a
     /// symptom that is off then costs one test, and no saved registers.
     #[inline(never)]
-    pub(super) fn follow(
+    pub(super) fn follow<O: Observe<F>>(
         &mut self,
         travel: &Travel<F>,
         paid_share: F,
         besides: &mut Besides<F>,
-        observe: &mut impl Observe<F>,
+        observe: &mut O,
     ) -> F {
         if matches!(self.way, Way::Appearing) {
             return self.appear(&travel.to, besides);
         }
         let law_nm = law_nm(&mut self.law, Some(travel), besides, observe);
+        if O::LISTENS && self.law.is_active() {
+            observe.paid(const { &<E as Law>::SPEC }, law_nm, paid_share * law_nm);
+        }
         self.show(law_nm, paid_share, Some(travel), besides)
     }
 
@@ -154,7 +157,7 @@ impl<F: Real, E: Law<Real = F>> Kept<F, E> {
         let is_active = self.law.is_active();
         let mut nm = law_nm;
         if is_active {
-            nm = paid_share * nm;
+            nm = besides.pay(law_nm, paid_share);
         }
         if !matches!(self.way, Way::Free) {
             nm = self.held_back(nm, travel);

@@ -3,8 +3,8 @@
 use super::{EffectSpec, Observe, Timing};
 use crate::joint::SettingsError;
 use crate::real::Real;
-use crate::render::Shown;
 use crate::render::position::{Position, Travel};
+use crate::render::{Limit, Shown};
 
 crate::named! {
     /// Kind of a symptom's event; the names are those of `events.csv`.
@@ -50,6 +50,10 @@ crate::named! {
         Slack => "slack",
         /// It takes up torque again.
         Take => "take",
+        /// A beat or a reflex is over, of which the tank held a part back.
+        Weak => "weak",
+        /// The same, of which less than half the height was shown: too little to count.
+        Unfelt => "unfelt",
     }
 }
 
@@ -73,7 +77,9 @@ impl Word {
             | Self::Beat
             | Self::Stop
             | Self::Done
-            | Self::Snap => false,
+            | Self::Snap
+            | Self::Weak
+            | Self::Unfelt => false,
         }
     }
 }
@@ -288,6 +294,8 @@ pub(super) struct Besides<F> {
     pub(super) jump_nm: F,
     /// Their torque for which a tank pays, N·m.
     pub(super) active_nm: F,
+    /// Sum of the magnitudes of what the tank holds back of each, N·m.
+    pub(super) held_back_nm: F,
     /// One is on its way to other parameters.
     pub(super) is_settling: bool,
 }
@@ -297,15 +305,37 @@ impl<F: Real> Besides<F> {
     pub(super) const NOTHING: Self = Self {
         jump_nm: F::ZERO,
         active_nm: F::ZERO,
+        held_back_nm: F::ZERO,
         is_settling: false,
     };
 
-    /// Adds it to what is shown.
+    /// Adds it to what is shown, of which a tank pays this share.
     #[inline]
-    pub(super) fn add_to(&self, shown: &mut Shown<F>) {
+    pub(super) fn add_to(&self, paid_share: F, shown: &mut Shown<F>) {
         shown.jump_nm += self.jump_nm;
         shown.active_nm += self.active_nm;
         shown.settling |= self.is_settling;
+        if self.held_back_nm > F::ZERO {
+            hold_back(paid_share, shown);
+        }
+    }
+
+    /// Takes this share of the torque that a symptom asks for from the tank: returns it, N·m.
+    #[inline]
+    pub(super) fn pay(&mut self, asked_nm: F, paid_share: F) -> F {
+        let paid_nm = paid_share * asked_nm;
+        self.held_back_nm += (asked_nm - paid_nm).abs();
+        paid_nm
+    }
+}
+
+/// Notes that the tank pays no more than this share. A reason of the joint's stands: its torque is
+/// supervised by that.
+#[cold]
+fn hold_back<F: Real>(paid_share: F, shown: &mut Shown<F>) {
+    shown.held_back = F::ONE - paid_share;
+    if shown.limit == Limit::None {
+        shown.limit = Limit::Tank;
     }
 }
 

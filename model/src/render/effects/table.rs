@@ -50,6 +50,15 @@ macro_rules! effects {
                 Ok(())
             }
 
+            /// Returns whether a symptom that is on gives energy: a tank pays for it.
+            ///
+            /// # Errors
+            /// As [`Self::laws`].
+            pub fn gives_energy(&self, timing: &Timing) -> Result<bool, SettingsError> {
+                let laws = self.laws::<f64>(timing)?;
+                Ok($(laws.$symptom.as_ref().is_some_and(Law::is_active))||*)
+            }
+
             /// Bounds of the demand of each symptom that is on.
             fn bounds(&self) -> impl Iterator<Item = Bounds> {
                 let all = [$(self.$symptom.as_ref().map(<$symptom::$s_law<f64> as Law>::bounds)),*];
@@ -331,7 +340,7 @@ macro_rules! effects {
                     shown.added.$symptom = nm;
                     note(this.$symptom.law(), nm, shown);
                 })*
-                besides.add_to(shown);
+                besides.add_to(paid_share, shown);
                 // Only then may one have gone.
                 if shown.settling || !seen.is_driven {
                     this.look();

@@ -20,7 +20,8 @@ impl Parabola {
             rate,
             curvature,
         } = *self;
-        let turns_back = curvature < 0.0 && rate * rate <= -2.0 * curvature * (slack + left.min(0.0));
+        let turns_back =
+            curvature < 0.0 && rate * rate <= -2.0 * curvature * (slack + left.min(0.0));
         if left < -slack || (left <= 0.0 && rate > 0.0 && !turns_back) {
             return Some(0.0);
         }

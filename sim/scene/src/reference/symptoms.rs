@@ -13,8 +13,8 @@
 //! | the loop over events and pieces of the motion | `runner` |
 //! | a law and how it is read | the file of its name |
 //!
-//! Events and torques are those of one symptom on its own: the sum, its limit
-//! and the tank of the active effects are later stages.
+//! Events and torques are those that one symptom asks for on its own. The tank that pays for
+//! those that give energy is in [`ListedSymptoms`]; a device's limit on the sum is no part of it.
 
 mod clasp_knife;
 mod clonus;
@@ -33,7 +33,7 @@ mod stretch_catch;
 mod texture;
 
 pub use keys::{Keys, SymptomError};
-pub use listed::{ListedSymptoms, NamedEvent};
+pub use listed::{ListedSymptoms, NamedEvent, Paid};
 
 use clasp_knife::ClaspKnife;
 use clonus::Clonus;
@@ -104,6 +104,8 @@ pub struct Symptom<'a> {
     /// Its parts, which never have torque together: the two walls of
     /// `range-limit`.
     parts: Vec<Box<dyn Run + 'a>>,
+    /// It gives energy: a tank pays for it.
+    is_active: bool,
 }
 
 impl<'a> Symptom<'a> {
@@ -117,6 +119,7 @@ impl<'a> Symptom<'a> {
         let effect = NAMES.iter().find(|known| **known == name);
         let effect = effect.ok_or_else(|| SymptomError::Unknown(name.to_owned()))?;
         let reader = &Reader { effect, keys };
+        let mut is_active = *effect == "clonus";
         let parts = match *effect {
             "range-limit" => walls(reader)?
                 .into_iter()
@@ -129,6 +132,7 @@ impl<'a> Symptom<'a> {
                 let s = reader.muscles()?;
                 let is_reflex = muscular == "spasticity"
                     && reader.choice("form", ("catch", false), &[("reflex", true)])?;
+                is_active |= is_reflex;
                 vec![match (muscular, is_reflex) {
                     ("clasp-knife", _) => part(ClaspKnife::read(reader, s)?, s, motion),
                     ("clonus", _) => part(Clonus::read(reader, s)?, s, motion),
@@ -138,7 +142,7 @@ impl<'a> Symptom<'a> {
             }
             unknown => return Err(SymptomError::Unknown(unknown.to_owned())),
         };
-        Ok(Self { parts })
+        Ok(Self { parts, is_active })
     }
 
     /// Advances to `to_s` and returns every event on the way, in order.
@@ -153,7 +157,7 @@ impl<'a> Symptom<'a> {
         events
     }
 
-    /// Its torque where it has been advanced to, N·m.
+    /// The torque that it asks for where it has been advanced to, N·m.
     pub fn torque_nm(&self) -> f64 {
         self.parts.iter().map(|part| part.torque_nm()).sum()
     }

@@ -2,6 +2,7 @@
 //! shaft does what comes of it.
 
 use super::device::{Device, Happened, Span, device};
+use super::held_back::Beyond;
 use super::stages;
 use super::stepping::{CHECK_STEPS, PROGRESS_STEPS};
 use super::watch::{Ended, Stopped, Watch};
@@ -100,6 +101,7 @@ pub(super) fn simulate<F: Precise>(
     let shaft = plant.shaft();
     let settings = scene.effect_settings();
     let run = Run {
+        has_tank: scene.gives_energy(),
         first_felt_nm: first_felt_nm(scene)?,
         device: device::<F>(scene, solver, tick_s, &shaft)?,
         plant,
@@ -134,6 +136,8 @@ struct Run {
     splits: bool,
     /// Breaks of the motion within the tick.
     cuts: Vec<Cut>,
+    /// A symptom can give energy.
+    has_tank: bool,
     /// Torque that the hand feels in the first tick, N·m; it stands in the first row, too.
     first_felt_nm: f64,
 }
@@ -168,11 +172,7 @@ impl Run {
         })
     }
 
-    fn go<F: Precise>(
-        mut self,
-        scene: &Scene,
-        watch: &mut dyn Watch,
-    ) -> Result<Totals, Ended> {
+    fn go<F: Precise>(mut self, scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, Ended> {
         let (steps, every) = steps(scene);
         let wants_rows = watch.wants_rows();
         let parts = scene.substeps;
@@ -183,6 +183,7 @@ impl Run {
         let has_impacts = self.plant.impacts().is_some();
         let (mut struck_nms, mut most_struck_nms) = (0.0, 0.0_f64);
         let (mut held, mut limited) = (0.0, 0.0);
+        let mut beyond = Beyond::new();
         let mut fastest_rad_s: f64 = 0.0;
         let mut row = Vec::new();
         let mut events = Vec::new();
@@ -250,7 +251,9 @@ impl Run {
             }
             tell(&mut events, watch)?;
             time_s = walk.time_s();
+            beyond.note(self.device.asked_nm(), (time_s, self.tick_s));
         }
+        let tank = self.device.tank();
         let (tally, crowded_steps) = self.device.finish(time_s).unzip();
         Ok(Totals {
             steps,
@@ -258,6 +261,8 @@ impl Run {
             tally,
             fastest_rad_s,
             crowded_steps: crowded_steps.unwrap_or(0),
+            tank,
+            beyond,
             plant: Some(PlantTotals {
                 balance: self.plant.balance(),
                 rendering: Rendering {
@@ -287,6 +292,9 @@ impl Run {
             row.push(shown.added.get(stage.place).unwrap_or(0.0));
             let phase = stage.spec.phases.map(|_| shown.phases.get(stage.spec));
             row.extend(phase.map(f64::from));
+        }
+        if self.has_tank {
+            row.push(shown.held_back);
         }
         if scene.is_device {
             row.extend([shown.torque_nm, f64::from(shown.limit as u8)]);

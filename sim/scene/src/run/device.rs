@@ -1,8 +1,9 @@
 //! The device of a coupled run: sensor and pipeline, one tick at a time, behind
 //! one call, so that the loop around them is the same for all.
 
+use super::held_back::{TankAccounting, TankTotals};
 use super::sensor::{Encoded, Ideal, Sensor};
-use super::stages::{self, HasJoint, Rendering, Retiming};
+use super::stages::{self, HasJoint, Notice, Rendering, Retiming};
 use super::stepping::StepAccounting;
 use super::tally::Tally;
 use crate::any_joint::{AnyJoint, Precise};
@@ -11,7 +12,6 @@ use crate::trace::{Column, ColumnKind, EventRecord, SymptomEvent};
 use crate::walk::Cut;
 use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::effects::EffectSpec;
-use crepitus_model::render::effects::symptom::Change;
 use crepitus_model::render::input_check::{Checked, Sample};
 use crepitus_model::render::{Bare, Seen, Shown};
 use crepitus_model::solver::locate::Locate;
@@ -48,11 +48,11 @@ impl Happened {
     }
 }
 
-/// Puts the events of symptoms on record.
-#[derive(Clone, Copy)]
+/// Puts the events of symptoms on record, and what the tank pays of them.
 struct Recorder {
     step_s: f64,
     play_events: bool,
+    tank: TankAccounting,
 }
 
 impl Recorder {
@@ -60,21 +60,36 @@ impl Recorder {
         Self {
             step_s: scene.step_s(),
             play_events: scene.play_events,
+            tank: TankAccounting::default(),
         }
     }
 
-    /// The same for what happens in a part of a tick.
-    fn over(self, step_s: f64) -> Self {
-        Self { step_s, ..self }
-    }
-
     fn note<F: Real>(
-        self,
+        &mut self,
         (start_s, from, to): (f64, &Body, &Body),
         effect: &'static EffectSpec,
-        change: &Change<F>,
+        notice: &Notice<F>,
         events: &mut Vec<Happened>,
     ) {
+        let change = match notice {
+            Notice::Change(change) => change,
+            Notice::Paid { asked_nm, paid_nm } => {
+                let paid = (asked_nm.to_f64(), paid_nm.to_f64());
+                let tick = (start_s + self.step_s, self.step_s);
+                if let Some(ended) = self.tank.paid(effect.name, paid, tick) {
+                    events.push(Happened::Symptom(SymptomEvent {
+                        time_s: tick.0,
+                        effect: effect.name,
+                        word: ended.word,
+                        angle_rad: to.angle_rad,
+                        omega_rad_s: to.omega_rad_s,
+                        torque_before_nm: ended.asked_nm,
+                        torque_after_nm: ended.paid_nm,
+                    }));
+                }
+                return;
+            }
+        };
         if change.word.is_of_play() && !self.play_events {
             return;
         }
@@ -140,6 +155,12 @@ pub(super) trait Device {
 
     /// Writes its columns.
     fn write(&self, row: &mut Vec<f64>);
+
+    /// Torque before the limits of a device, N·m; without one that which is shown.
+    fn asked_nm(&self) -> f64;
+
+    /// Account of what the tank held back so far.
+    fn tank(&self) -> TankTotals;
 
     /// Returns whether its state is still numbers.
     fn is_finite(&self) -> bool;
@@ -310,9 +331,18 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
         self.shown.to_f64()
     }
 
+    fn asked_nm(&self) -> f64 {
+        let asked_nm = self.stages.asked_nm();
+        asked_nm.unwrap_or(self.shown.torque_nm).to_f64()
+    }
+
+    fn tank(&self) -> TankTotals {
+        self.recorder.tank.totals()
+    }
+
     fn tick(&mut self, start_s: f64, from: &Body, to: &Body, events: &mut Vec<Happened>) {
         let seen = self.sensor.see(from, to);
-        let (accounting, recorder) = (&mut self.accounting, self.recorder);
+        let (accounting, recorder) = (&mut self.accounting, &mut self.recorder);
         let events = RefCell::new(events);
         self.shown = self.stages.tick(
             &Seen::taken(&seen, self.sensor.place(to)),
@@ -320,9 +350,9 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
                 let event = accounting.event(start_s, &seen, &event);
                 events.borrow_mut().push(Happened::Joint(event));
             },
-            &mut |effect, change| {
+            &mut |effect, notice| {
                 let events = &mut events.borrow_mut();
-                recorder.note((start_s, from, to), effect, &change, events);
+                recorder.note((start_s, from, to), effect, &notice, events);
             },
         );
         let joint = self.stages.joint();
@@ -338,11 +368,12 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
     fn tick_in_parts(&mut self, tick: &Span, cuts: &[Cut], events: &mut Vec<Happened>) {
         let parts = tick.parts(cuts);
         let (accounting, events) = (&mut self.accounting, RefCell::new(events));
+        let recorder = &mut self.recorder;
         let mut jump_nm = F::ZERO;
         for (left, part) in (0..parts.len()).rev().zip(&parts) {
             let Span { from, to, .. } = part;
             let seen = self.sensor.see(from, to);
-            let recorder = self.recorder.over(part.length_s);
+            recorder.step_s = part.length_s;
             accounting.step_s = part.length_s;
             self.retiming.ticks_of(part.length_s);
             let is_last = left == 0;
@@ -353,9 +384,9 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
                     let event = accounting.event(part.start_s, &seen, &event);
                     events.borrow_mut().push(Happened::Joint(event));
                 },
-                &mut |effect, change| {
+                &mut |effect, notice| {
                     let events = &mut events.borrow_mut();
-                    recorder.note((part.start_s, from, to), effect, &change, events);
+                    recorder.note((part.start_s, from, to), effect, &notice, events);
                 },
             );
             jump_nm = self.shown.jump_nm;
@@ -366,6 +397,7 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
             }
         }
         accounting.step_s = tick.length_s;
+        recorder.step_s = tick.length_s;
         self.retiming.ticks_of(tick.length_s);
         self.stages.retime(&self.retiming);
     }
@@ -407,34 +439,45 @@ impl<F: Real, P: Rendering<F>, S: Sensor<F>> Device for Watching<F, P, S> {
         self.shown.to_f64()
     }
 
+    fn asked_nm(&self) -> f64 {
+        let asked_nm = self.stages.asked_nm();
+        asked_nm.unwrap_or(self.shown.torque_nm).to_f64()
+    }
+
+    fn tank(&self) -> TankTotals {
+        self.recorder.tank.totals()
+    }
+
     fn tick(&mut self, start_s: f64, from: &Body, to: &Body, events: &mut Vec<Happened>) {
         let seen = self.sensor.see(from, to);
-        let recorder = self.recorder;
+        let recorder = &mut self.recorder;
         self.shown = self.stages.tick(
             &Seen::taken(&seen, self.sensor.place(to)),
             &mut |_| {},
-            &mut |effect, change| recorder.note((start_s, from, to), effect, &change, events),
+            &mut |effect, notice| recorder.note((start_s, from, to), effect, &notice, events),
         );
     }
 
     fn tick_in_parts(&mut self, tick: &Span, cuts: &[Cut], events: &mut Vec<Happened>) {
         let parts = tick.parts(cuts);
+        let recorder = &mut self.recorder;
         let mut jump_nm = F::ZERO;
         for (left, part) in (0..parts.len()).rev().zip(&parts) {
             let Span { from, to, .. } = part;
             let seen = self.sensor.see(from, to);
-            let recorder = self.recorder.over(part.length_s);
+            recorder.step_s = part.length_s;
             self.retiming.ticks_of(part.length_s);
             self.shown = self.stages.tick_part(
                 &Seen::taken(&seen, self.sensor.place(to)),
                 (&self.retiming, left == 0, jump_nm),
                 &mut |_| {},
-                &mut |effect, change| {
-                    recorder.note((part.start_s, from, to), effect, &change, events);
+                &mut |effect, notice| {
+                    recorder.note((part.start_s, from, to), effect, &notice, events);
                 },
             );
             jump_nm = self.shown.jump_nm;
         }
+        recorder.step_s = tick.length_s;
         self.retiming.ticks_of(tick.length_s);
         self.stages.retime(&self.retiming);
     }

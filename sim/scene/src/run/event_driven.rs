@@ -1,11 +1,12 @@
 //! A run of the `reference` solver: from event to event, rows read off in
 //! between.
 
+use super::held_back::{Beyond, TankAccounting};
 use super::lead::Lead;
 use super::tally::{StickEnd, Tally};
 use super::watch::{Ended, Stopped, Watch};
 use super::{Totals, steps};
-use crate::reference::symptoms::{ListedSymptoms, NamedEvent};
+use crate::reference::symptoms::{ListedSymptoms, NamedEvent, Paid};
 use crate::reference::{Follow, Reference};
 use crate::scene::Scene;
 use crate::trace::{EventRecord, SymptomEvent};
@@ -39,15 +40,21 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
     });
     let mut symptoms = ListedSymptoms::new(&scene.listed, &scene.motion)
         .map_err(|_| SettingsError::Contradiction { reason: UNSOLVED })?;
+    let mut unshown = Unshown {
+        tank: TankAccounting::default(),
+        beyond: Beyond::new(),
+    };
     let mut row = Vec::new();
 
     for n in 0..=rows {
         let time_s = clock.time_s(n);
-        tell(scene, &mut symptoms, time_s, watch)?;
+        tell(scene, &mut symptoms, time_s, &mut unshown, watch)?;
+        let mut sum_nm = symptoms.torques().map(|(_, nm)| nm).sum::<f64>();
         row.clear();
         if let Some((reference, accounting)) = &mut joint {
             accounting.follow(time_s, reference, watch)?;
             accounting.end_row(time_s, reference);
+            sum_nm += reference.torque_nm();
             let shaft = reference.shaft();
             fastest_rad_s = fastest_rad_s.max(shaft.omega_rad_s.abs());
             if wants_rows {
@@ -68,8 +75,12 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
                 row.extend([time_s, shaft.phi_rad, shaft.omega_rad_s]);
             }
         }
+        if n > 0 {
+            unshown.beyond.note(sum_nm, (time_s, scene.trace_step_s));
+        }
         if wants_rows {
             row.extend(symptoms.torques().map(|(_, nm)| nm));
+            row.extend(symptoms.held_back());
             watch.row(&row)?;
         }
         if n.is_multiple_of(PROGRESS_ROWS) {
@@ -78,7 +89,7 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
     }
     // What is left after the last row has events, too.
     let end_s = scene.duration_s.max(clock.time_s(rows));
-    tell(scene, &mut symptoms, end_s, watch)?;
+    tell(scene, &mut symptoms, end_s, &mut unshown, watch)?;
     if let Some((reference, accounting)) = &mut joint {
         accounting.follow(end_s, reference, watch)?;
         accounting.end_row(end_s, reference);
@@ -99,6 +110,8 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
         tally,
         fastest_rad_s,
         crowded_steps: 0,
+        tank: unshown.tank.totals(),
+        beyond: unshown.beyond,
         plant: None,
     })
 }
@@ -106,25 +119,57 @@ pub(super) fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, E
 /// A scene checks its numbers before it runs.
 const UNSOLVED: &str = "the numbers of a symptom have no solution";
 
+/// Accounts of torque that is held back, or beyond what a device shows.
+struct Unshown {
+    tank: TankAccounting,
+    beyond: Beyond,
+}
+
 /// Passes on what happens to the symptoms up to a time.
 fn tell(
     scene: &Scene,
     symptoms: &mut ListedSymptoms<'_>,
     to_s: f64,
+    unshown: &mut Unshown,
     watch: &mut dyn Watch,
 ) -> Result<(), Ended> {
-    for NamedEvent { effect, event } in symptoms.advance(to_s) {
-        if scene.play_events || !event.kind.is_of_play() {
-            watch.symptom(&SymptomEvent {
-                time_s: event.time_s,
-                effect,
-                word: event.kind,
-                angle_rad: event.angle_rad,
-                omega_rad_s: event.omega_rad_s,
-                torque_before_nm: event.torque_before_nm,
-                torque_after_nm: event.torque_after_nm,
-            })?;
+    let mut held_back = Vec::new();
+    let mut on_paid = |paid: &Paid| {
+        let torques = (paid.asked_nm, paid.paid_nm);
+        let step = (paid.end_s, paid.step_s);
+        if let Some(ended) = unshown.tank.paid(paid.effect, torques, step) {
+            let shaft = scene.motion.at(paid.end_s);
+            held_back.push(SymptomEvent {
+                time_s: paid.end_s,
+                effect: paid.effect,
+                word: ended.word,
+                angle_rad: shaft.phi_rad,
+                omega_rad_s: shaft.omega_rad_s,
+                torque_before_nm: ended.asked_nm,
+                torque_after_nm: ended.paid_nm,
+            });
         }
+    };
+    let found = symptoms.advance(to_s, &mut on_paid);
+    let mut events: Vec<_> = found
+        .into_iter()
+        .filter(|found| scene.play_events || !found.event.kind.is_of_play())
+        .map(|NamedEvent { effect, event }| SymptomEvent {
+            time_s: event.time_s,
+            effect,
+            word: event.kind,
+            angle_rad: event.angle_rad,
+            omega_rad_s: event.omega_rad_s,
+            torque_before_nm: event.torque_before_nm,
+            torque_after_nm: event.torque_after_nm,
+        })
+        .collect();
+    if !held_back.is_empty() {
+        events.append(&mut held_back);
+        events.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+    }
+    for event in &events {
+        watch.symptom(event)?;
     }
     Ok(())
 }

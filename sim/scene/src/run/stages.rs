@@ -8,7 +8,7 @@ use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::effects::symptom::Change;
 use crepitus_model::render::effects::{
-    EffectSettings, EffectSpec, Effects, SwitchedEffects, Timing,
+    EffectSettings, EffectSpec, Effects, Observe, SwitchedEffects, Timing,
 };
 use crepitus_model::render::input_check::{Checked, InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
@@ -28,7 +28,7 @@ pub(super) type BareStages<F, S> = Pipeline<F, (), S, Effects<F>>;
 
 /// Stages of the drive; its symptoms are always those of the firmware.
 pub(super) type DriveStages<F, S> =
-    Pipeline<F, InputCheck<F>, S, SwitchedEffects<F>, TorqueLimits<F>>;
+    Pipeline<F, InputCheck<F>, S, SwitchedEffects<F>, Remembering<F>>;
 
 /// Returns the stages around a bare solver, or around nothing.
 pub(super) fn bare<F: Real, S: Symptom<F>>(
@@ -59,7 +59,10 @@ pub(super) fn drive<F: Real, S: Symptom<F>>(
         InputCheck::new(&InputLimits::device(step_s), F::from_f64(step_s), F::ZERO),
         symptoms,
         effects,
-        TorqueLimits::armed(F::from_f64(limits.torque_nm), slew_nm),
+        Remembering {
+            limits: TorqueLimits::armed(F::from_f64(limits.torque_nm), slew_nm),
+            asked_nm: F::ZERO,
+        },
     ))
 }
 
@@ -133,7 +136,10 @@ impl<F: Real> InParts for SwitchedEffects<F> {}
 
 impl<F: Real> InParts for Bare<AnyJoint<F>> {
     fn retime(&mut self, to: &Retiming) {
-        let made = to.joint.as_ref().map(|j| StepCoefficients::new(j, to.timing.step_s));
+        let made = to
+            .joint
+            .as_ref()
+            .map(|j| StepCoefficients::new(j, to.timing.step_s));
         if let Some(Ok(coefficients)) = made {
             self.0.change_step(coefficients);
         }
@@ -150,6 +156,62 @@ impl<F: Real> InParts for Effects<F> {
     }
 }
 
+/// Report of a symptom from within a tick.
+pub(super) enum Notice<F> {
+    /// An event of it.
+    Change(Change<F>),
+    /// It asks for a torque, and the tank pays so much of it, N·m.
+    Paid { asked_nm: F, paid_nm: F },
+}
+
+/// Passes reports on. Not a closure: the effects would be compiled for that of each pipeline.
+struct Reports<'a, F>(&'a mut dyn FnMut(&'static EffectSpec, Notice<F>));
+
+impl<F: Real> Observe<F> for Reports<'_, F> {
+    const LISTENS: bool = true;
+
+    fn change(&mut self, effect: &'static EffectSpec, change: Change<F>) {
+        (self.0)(effect, Notice::Change(change));
+    }
+
+    fn paid(&mut self, effect: &'static EffectSpec, asked_nm: F, paid_nm: F) {
+        (self.0)(effect, Notice::Paid { asked_nm, paid_nm });
+    }
+}
+
+/// Limits of a device that remember the torque before them.
+pub(super) struct Remembering<F> {
+    limits: TorqueLimits<F>,
+    asked_nm: F,
+}
+
+impl<F: Real> Limits<F> for Remembering<F> {
+    #[inline]
+    fn tick(&mut self, shown: &mut Shown<F>) {
+        self.asked_nm = shown.torque_nm;
+        self.limits.tick(shown);
+    }
+}
+
+/// Torque before the limits of a device.
+pub(super) trait Asked<F>: Limits<F> {
+    /// The torque that came in, N·m; none where there are no limits.
+    fn asked_nm(&self) -> Option<F>;
+}
+
+impl<F> Asked<F> for () {
+    fn asked_nm(&self) -> Option<F> {
+        None
+    }
+}
+
+impl<F: Real> Asked<F> for Remembering<F> {
+    #[inline]
+    fn asked_nm(&self) -> Option<F> {
+        Some(self.asked_nm)
+    }
+}
+
 /// A pipeline of any stages.
 pub(super) trait Rendering<F> {
     /// See [`Pipeline::tick_observed`].
@@ -157,8 +219,11 @@ pub(super) trait Rendering<F> {
         &mut self,
         seen: &Seen<F>,
         on_event: &mut dyn FnMut(Event<F>),
-        on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
+        on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
     ) -> Shown<F>;
+
+    /// Torque before the limits of a device, N·m; none without a device.
+    fn asked_nm(&self) -> Option<F>;
 
     /// One part of a tick: at the end of it, if it is not the last, stages that know whole ticks
     /// only are as before. `jump_nm` is what the parts before it had of jumps.
@@ -167,7 +232,7 @@ pub(super) trait Rendering<F> {
         seen: &Seen<F>,
         part: (&Retiming, bool, F),
         on_event: &mut dyn FnMut(Event<F>),
-        on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
+        on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
     ) -> Shown<F>;
 
     /// Goes on in ticks of another length.
@@ -185,14 +250,14 @@ where
     I: Check<F>,
     S: Symptom<F> + InParts,
     E: Addition<F> + InParts + Clone,
-    L: Limits<F>,
+    L: Asked<F>,
 {
     fn tick_part(
         &mut self,
         seen: &Seen<F>,
         (to, is_last, jump_nm): (&Retiming, bool, F),
         on_event: &mut dyn FnMut(Event<F>),
-        mut on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
+        on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
     ) -> Shown<F> {
         self.retime(to);
         let before = (!is_last).then(|| self.effects.clone());
@@ -204,7 +269,8 @@ where
         let torque = self.symptoms.tick(&input, &mut shown, on_event);
         shown.torque_nm = torque.shown_nm;
         shown.model_torque_nm = torque.model_nm;
-        self.effects.tick(seen, &input, &mut shown, &mut on_change);
+        self.effects
+            .tick(seen, &input, &mut shown, &mut Reports(on_notice));
         self.limits.tick(&mut shown);
         if let Some(before) = before {
             self.effects.forget_part(&before);
@@ -222,10 +288,14 @@ where
         &mut self,
         seen: &Seen<F>,
         on_event: &mut dyn FnMut(Event<F>),
-        mut on_change: &mut dyn FnMut(&'static EffectSpec, Change<F>),
+        on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
     ) -> Shown<F> {
-        // Not a closure: the effects would be compiled for that of each pipeline.
-        self.tick_observed(seen, on_event, &mut on_change)
+        self.tick_observed(seen, on_event, &mut Reports(on_notice))
+    }
+
+    #[inline]
+    fn asked_nm(&self) -> Option<F> {
+        self.limits.asked_nm()
     }
 
     fn rest(&mut self, place: &Position<F>) {

@@ -1,5 +1,6 @@
 //! A run in fixed steps: true motion → sensor → joint.
 
+use super::held_back::{Beyond, TankTotals};
 use super::lead::Lead;
 use super::sensor::{Encoded, Ideal, Sensor};
 use super::tally::{Gap, ObjectState, StickEnd, Tally};
@@ -86,6 +87,8 @@ fn bare<F: Real, S: Sensor<F>>(
         tally: None,
         fastest_rad_s,
         crowded_steps: 0,
+        tank: TankTotals::default(),
+        beyond: Beyond::new(),
         plant: None,
     })
 }
@@ -103,6 +106,7 @@ fn step_joint<F: Real, S: Sensor<F>>(
     let step_s = scene.step_s();
     let mut walk = Walk::new(&scene.motion, step_s).in_parts::<F>();
     let mut accounting = StepAccounting::new::<F>(settings, step_s, walk.now().omega_rad_s);
+    let mut beyond = Beyond::new();
     let mut row = Vec::new();
     let mut fastest_rad_s = walk.now().omega_rad_s.abs();
     accounting.tally.shown(joint.torque_nm().to_f64());
@@ -149,7 +153,14 @@ fn step_joint<F: Real, S: Sensor<F>>(
                 fastest_rad_s = fastest_rad_s.max(part.to.omega_rad_s.abs());
             }
             let parts = (start_s, walk.parts());
-            step_in_parts(parts, settings, &mut sensor, &mut joint, &mut accounting, watch)?;
+            step_in_parts(
+                parts,
+                settings,
+                &mut sensor,
+                &mut joint,
+                &mut accounting,
+                watch,
+            )?;
             continue;
         };
         fastest_rad_s = fastest_rad_s.max(to.omega_rad_s.abs());
@@ -163,6 +174,7 @@ fn step_joint<F: Real, S: Sensor<F>>(
         });
         result?;
         accounting.end_step(&seen, &joint);
+        beyond.note(joint.torque_nm().to_f64(), (walk.time_s(), step_s));
     }
     accounting.finish(walk.time_s(), &joint);
     Ok(Totals {
@@ -171,6 +183,8 @@ fn step_joint<F: Real, S: Sensor<F>>(
         tally: Some(accounting.tally),
         fastest_rad_s,
         crowded_steps: accounting.crowded_steps,
+        tank: TankTotals::default(),
+        beyond,
         plant: None,
     })
 }

@@ -1,10 +1,12 @@
 //! The summary of a run: what `summary.json` holds.
 
 use super::coupled::PlantTotals;
+use super::held_back::{Beyond, TankTotals};
 use super::tally::Tally;
 use super::{AddedTime, Totals};
 use crate::scene::{Crepitus, DataFile, SCENE_VERSION, Scene, SolverChoice};
 use crepitus_model::parameters::Tabled;
+use crepitus_model::render::effects::FELT_SHARE;
 use crepitus_model::{Convention, EVENTS_PER_STEP, Parameters};
 use crepitus_plant::effect::{Effect, Part};
 use serde::Serialize;
@@ -66,6 +68,12 @@ pub struct Summary {
     pub energy: Option<EnergySummary>,
     /// Slips in which the shaft fell behind the object.
     pub lead: Option<LeadSummary>,
+    /// Torque that the energy tank held back, if symptoms can give energy.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tank: Option<TankSummary>,
+    /// Torque beyond the largest of a device, if there was any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub torque_limit: Option<TorqueLimitSummary>,
     /// Torque at the hand, if there is a plant and a hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hand_torque: Option<TorqueSummary>,
@@ -156,6 +164,40 @@ pub struct TorqueSummary {
     pub max_nm: f64,
     /// Root mean square over time.
     pub rms_nm: f64,
+}
+
+/// What the energy tank held back.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TankSummary {
+    /// The law of the tank: `ticks`, the device's, or `continuous`, that of `reference`.
+    pub law: &'static str,
+    /// Time of the first torque that was not paid in full, s.
+    pub first_s: Option<f64>,
+    /// Time with torque that was not paid in full, s.
+    pub held_back_s: f64,
+    /// The largest share held back.
+    pub most_share: f64,
+    /// Beats and reflexes that ended.
+    pub pushes: u64,
+    /// Those of them that were held back, but felt.
+    pub weak: u64,
+    /// Those of them of which less than half the height was shown.
+    pub unfelt: u64,
+}
+
+/// Torque beyond the largest of a device.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TorqueLimitSummary {
+    /// The largest torque of a device, N·m.
+    pub limit_nm: f64,
+    /// Whether the scene has a device, which then showed no more than that.
+    pub is_applied: bool,
+    /// Time of the first torque beyond, s.
+    pub first_s: f64,
+    /// Time beyond, s.
+    pub beyond_s: f64,
+    /// The torque that was asked for furthest beyond, N·m.
+    pub most_nm: f64,
 }
 
 /// Impacts: each takes no time, so it has an impulse and no torque.
@@ -324,6 +366,10 @@ pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64) -> Summary 
             behind_j: t.lead.behind_j,
             worst_behind_rad_s: t.lead.worst_rad_s,
         }),
+        tank: scene
+            .gives_energy()
+            .then(|| tank_summary(scene, &totals.tank)),
+        torque_limit: torque_limit(scene, &totals.beyond),
         hand_torque: totals.plant.as_ref().and_then(|p| hand_torque(p, totals)),
         impacts: totals.plant.as_ref().and_then(impacts),
         plant_energy: totals.plant.as_ref().map(|p| plant_energy(p, tally)),
@@ -331,6 +377,31 @@ pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64) -> Summary 
         real_time_factor: totals.end_s / wall_s,
         warnings,
     }
+}
+
+fn tank_summary(scene: &Scene, totals: &TankTotals) -> TankSummary {
+    TankSummary {
+        law: match scene.solver {
+            SolverChoice::Reference => "continuous",
+            SolverChoice::Ladder { .. } => "ticks",
+        },
+        first_s: totals.first_s,
+        held_back_s: totals.held_back_s,
+        most_share: totals.most_share,
+        pushes: totals.pushes,
+        weak: totals.weak,
+        unfelt: totals.unfelt,
+    }
+}
+
+fn torque_limit(scene: &Scene, beyond: &Beyond) -> Option<TorqueLimitSummary> {
+    beyond.first_s.map(|first_s| TorqueLimitSummary {
+        limit_nm: beyond.limit_nm,
+        is_applied: scene.is_device,
+        first_s,
+        beyond_s: beyond.beyond_s,
+        most_nm: beyond.most_nm,
+    })
 }
 
 #[expect(clippy::cast_precision_loss, reason = "below 2^53")]
@@ -477,6 +548,8 @@ fn run_warnings(scene: &Scene, totals: &Totals) -> Vec<String> {
     if let Some(plant) = &totals.plant {
         warnings.extend(balance_warning(plant.balance.relative_residual()));
     }
+    warnings.extend(tank_warning(scene, &totals.tank));
+    warnings.extend(torque_limit(scene, &totals.beyond).map(|limit| limit_warning(&limit)));
     if totals.crowded_steps > 0 {
         warnings.push(format!(
             "{} steps had {EVENTS_PER_STEP} events, the most that a step takes in, and more may have followed: events and cycles are not those of the joint, and no frequency is given; choose a shorter step",
@@ -497,6 +570,52 @@ fn run_warnings(scene: &Scene, totals: &Totals) -> Vec<String> {
         warnings.extend(step_warnings(crepitus, step_s, totals.fastest_rad_s));
     }
     warnings
+}
+
+/// Beats and reflexes that the tank held back.
+fn tank_warning(scene: &Scene, totals: &TankTotals) -> Option<String> {
+    let first_s = totals.first_s?;
+    let law = match scene.solver {
+        SolverChoice::Reference => {
+            "; `reference` has the tank as a continuous law, which a device takes tick by tick"
+        }
+        SolverChoice::Ladder { .. } => "",
+    };
+    Some(format!(
+        "the energy tank held back torque of {} from t = {first_s:.4} s on, for {:.3} s in all, by up to {:.0} %: of {} beats and \
+         reflexes that ended {} were weak and {} not felt (less than {:.0} % of their height){law}",
+        totals.effects.join(" and "),
+        totals.held_back_s,
+        1e2 * totals.most_share,
+        totals.pushes,
+        totals.weak,
+        totals.unfelt,
+        1e2 * FELT_SHARE,
+    ))
+}
+
+/// Torque that no device shows.
+fn limit_warning(limit: &TorqueLimitSummary) -> String {
+    let TorqueLimitSummary {
+        limit_nm,
+        first_s,
+        beyond_s,
+        most_nm,
+        ..
+    } = limit;
+    let when = format!(
+        "from t = {first_s:.4} s on, for {beyond_s:.3} s in all, up to {:.2} N·m",
+        most_nm.abs()
+    );
+    if limit.is_applied {
+        format!(
+            "the torque asked for was above the device's limit of {limit_nm} N·m {when}: the device showed {limit_nm} N·m then"
+        )
+    } else {
+        format!(
+            "the torque is above the {limit_nm} N·m that a device shows at most {when}: this scene has no device and no limit (`--as-device` applies it)"
+        )
+    }
 }
 
 /// Slips that went on after their end.

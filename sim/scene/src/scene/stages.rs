@@ -47,6 +47,12 @@ impl Scene {
         effect_settings(&self.listed)
     }
 
+    /// Returns whether a symptom of the scene gives energy, for which a tank pays.
+    pub(crate) fn gives_energy(&self) -> bool {
+        let timing = self.timing(crepitus_model::joint::LONGEST_STEP_S, 1);
+        self.effect_settings().gives_energy(&timing) == Ok(true)
+    }
+
     /// Timing of its device, with its measurement of the shaft.
     pub(crate) fn timing(&self, step_s: f64, delay_ticks: usize) -> Timing {
         Timing {

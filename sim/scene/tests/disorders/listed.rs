@@ -61,7 +61,12 @@ fn the_symptoms_of_a_scene_are_found_by_name() {
         .into();
     let motion = constant(20.0, 60.0);
     let mut all = ListedSymptoms::new(&listed, &motion).unwrap();
-    let found = all.advance(1.0);
+    let mut paid = Vec::new();
+    let found = all.advance(1.0, &mut |step| paid.push(*step));
+    // A reflex gives energy, a lead-pipe does not.
+    assert!(paid.iter().all(|step| step.effect == "spasticity"));
+    let length_s: f64 = paid.iter().map(|step| step.step_s).sum();
+    assert!((length_s - 1.0).abs() < 1e-9 && paid.last().unwrap().end_s == 1.0);
     let names: Vec<_> = all.torques().map(|(name, _)| name).collect();
     assert_eq!(names, ["lead-pipe", "spasticity", "texture"]);
     assert!(

@@ -12,3 +12,4 @@ mod stepped;
 mod stepped_muscles;
 mod stepped_plays;
 mod support;
+mod unshown;

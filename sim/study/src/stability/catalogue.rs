@@ -1,7 +1,8 @@
 //! The catalogue of hard cases as data, in the order of their numbers.
 //!
 //! From H38 to H56 are those that were added to detect planted faults, from H57 on those
-//! of symptoms besides crepitus, from H76 on those of the vibration actuator. A case that
+//! of symptoms besides crepitus, from H76 on those of the vibration actuator,
+//! from H88 on those that others have found. A case that
 //! ends in `L` is the long version of the one before it: hours of simulated
 //! time. To add a case, write a function like its neighbours in the file of its
 //! theme and give it a line in [`all`]; tests, matrix and report follow.
@@ -25,6 +26,7 @@ mod symptom_muscles;
 mod symptom_rigidity;
 mod symptom_tools;
 mod symptom_walls;
+mod tank_empty;
 mod ties;
 mod time;
 mod tools;
@@ -128,6 +130,7 @@ pub fn all() -> Vec<Case> {
         actuator::lost_samples(),
         actuator::held_loop(),
         actuator::free_loop(),
+        tank_empty::tank_empty(),
     ]
 }
 

@@ -7,7 +7,7 @@ use crepitus_model::parameters::ParameterSpec;
 use crepitus_report::Section;
 use crepitus_scene::Summary;
 use crepitus_scene::cpu_time::CLOCK;
-use crepitus_scene::run::{AddedTime, EffectSummary};
+use crepitus_scene::run::{AddedTime, EffectSummary, TankSummary, TorqueLimitSummary};
 
 /// Summary of the run in a few lines.
 pub(super) fn in_brief(s: &Summary) -> String {
@@ -105,6 +105,8 @@ pub(super) fn sections(s: &Summary, specs: &[&[ParameterSpec]]) -> Vec<Section> 
             ],
         ));
     }
+    sections.extend(s.tank.as_ref().map(tank_section));
+    sections.extend(s.torque_limit.as_ref().map(limit_section));
     sections.extend(plant::rendered_section(s));
     sections.extend(plant::impacts_section(s));
     sections.extend(
@@ -149,6 +151,50 @@ fn run_section(s: &Summary) -> Section {
         format!("{:.0}", s.real_time_factor),
     ));
     section("Run", rows)
+}
+
+/// What the energy tank held back.
+fn tank_section(tank: &TankSummary) -> Section {
+    let first = tank
+        .first_s
+        .map_or("none".to_owned(), |s| format!("{s:.4} s"));
+    section(
+        "Energy tank of clonus and reflex",
+        [
+            ("law", tank.law.to_owned()),
+            ("first torque held back", first),
+            ("time held back", format!("{:.3} s", tank.held_back_s)),
+            (
+                "largest share held back",
+                format!("{:.0} %", 1e2 * tank.most_share),
+            ),
+            (
+                "beats and reflexes",
+                format!(
+                    "{}, of them {} weak and {} not felt",
+                    tank.pushes, tank.weak, tank.unfelt
+                ),
+            ),
+        ],
+    )
+}
+
+/// Torque beyond the largest of a device.
+fn limit_section(limit: &TorqueLimitSummary) -> Section {
+    let applied = if limit.is_applied {
+        "applied: the scene has a device"
+    } else {
+        "not applied: the scene has no device"
+    };
+    section(
+        "Torque beyond a device's largest",
+        [
+            ("limit", format!("{}, {applied}", nm(limit.limit_nm))),
+            ("first beyond", format!("{:.4} s", limit.first_s)),
+            ("time beyond", format!("{:.3} s", limit.beyond_s)),
+            ("largest asked for", nm(limit.most_nm)),
+        ],
+    )
 }
 
 fn effect_section(effect: &EffectSummary, specs: &[ParameterSpec]) -> Section {
