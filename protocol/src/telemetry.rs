@@ -312,7 +312,7 @@ pub struct Block {
     /// Flags.
     pub flags: BlockFlags,
     /// Currents of the vibration actuator's coil.
-    pub coil: [CoilCurrent; COIL_CURRENTS],
+    pub coil_currents: [CoilCurrent; COIL_CURRENTS],
     /// The samples.
     pub samples: [Sample; BLOCK_SAMPLES],
     /// Phases of the device's effects, in the ticks of the samples.
@@ -339,7 +339,7 @@ impl Block {
             self.first_tick,
             self.revision,
             self.dropped,
-            (self.flags, self.coil),
+            (self.flags, self.coil_currents),
         )
     }
 
@@ -420,7 +420,7 @@ mod tests {
             flags: BlockFlags(7),
             samples: [Sample::default(); BLOCK_SAMPLES],
             phases: core::array::from_fn(|n| EffectPhases(u16::MAX >> (n % 16))),
-            coil: [-1, 1_500, NO_CURRENT, 7].map(CoilCurrent),
+            coil_currents: [-1, 1_500, NO_CURRENT, 7].map(CoilCurrent),
         };
         for (sample, n) in block.samples.iter_mut().zip(1..) {
             (sample.count, sample.torque_nm) = (-n, 0.1);
@@ -437,7 +437,7 @@ mod tests {
             pieces.extend(phases.bytes());
         }
         assert_eq!(whole, pieces);
-        let amperes = block.coil.map(CoilCurrent::amperes);
+        let amperes = block.coil_currents.map(CoilCurrent::amperes);
         assert_eq!(
             amperes,
             [Some(-0.001), Some(1.500_000_1), None, Some(0.007)]

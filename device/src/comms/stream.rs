@@ -85,7 +85,7 @@ mod tests {
                 ..Sample::default()
             }),
             phases: core::array::from_fn(|n| EffectPhases(u16::MAX >> (n % 16))),
-            coil: [1, -2, 300, -400].map(CoilCurrent),
+            coil_currents: [1, -2, 300, -400].map(CoilCurrent),
             ..Block::default()
         };
         let mut outbox = Outbox::default();

@@ -67,7 +67,7 @@ impl Batch {
         }
         let (sum, count) = core::mem::take(&mut self.coil);
         let place = (self.blocks.get_mut(self.filling))
-            .and_then(|block| block.coil.get_mut(self.filled / COIL_TICKS));
+            .and_then(|block| block.coil_currents.get_mut(self.filled / COIL_TICKS));
         if let Some(place) = place.filter(|_| count > 0) {
             *place = CoilCurrent(milliamperes(sum / f32::from(count)));
         }
@@ -108,7 +108,7 @@ impl Batch {
             self.dropped = self.dropped.wrapping_add(BLOCK_TICKS);
         }
         if let Some(next) = self.blocks.get_mut(self.filling) {
-            next.coil = [CoilCurrent::NONE; COIL_CURRENTS];
+            next.coil_currents = [CoilCurrent::NONE; COIL_CURRENTS];
         }
         self.sequence = self.sequence.wrapping_add(1);
         self.first_tick = self.first_tick.wrapping_add(BLOCK_SAMPLES as u64);
@@ -236,7 +236,7 @@ mod tests {
             if let Some(block) = pop(&mut batch) {
                 // Of 2, 3, 4; 5, 6, 8, 9; 10, 11.
                 let expected = [-200, 200, 550, i16::MIN].map(CoilCurrent);
-                assert_eq!(block.coil, expected);
+                assert_eq!(block.coil_currents, expected);
             }
         }
         // A block without any has none, in whichever slot.
@@ -249,7 +249,7 @@ mod tests {
                 &counters,
             );
             if let Some(block) = pop(&mut batch) {
-                assert_eq!(block.coil, [CoilCurrent::NONE; COIL_CURRENTS]);
+                assert_eq!(block.coil_currents, [CoilCurrent::NONE; COIL_CURRENTS]);
             }
         }
     }

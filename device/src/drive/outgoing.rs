@@ -358,7 +358,7 @@ mod tests {
         let mut block = Block {
             first_tick: 300,
             phases: core::array::from_fn(|n| EffectPhases(u16::MAX >> (n % 15))),
-            coil: [-3, 0, 700, i16::MIN].map(CoilCurrent),
+            coil_currents: [-3, 0, 700, i16::MIN].map(CoilCurrent),
             ..Block::default()
         };
         for (sample, n) in block.samples.iter_mut().zip(1_u8..) {

@@ -58,7 +58,7 @@ impl Samples {
         self.next_tick = block.end_tick();
         let begin = self.begin;
         let counts_per_s = counts_per_s(block);
-        let coil = block.coil.iter();
+        let coil = block.coil_currents.iter();
         let coil = coil.flat_map(|mean| std::iter::repeat_n(mean.amperes(), COIL_TICKS));
         block
             .ticks()
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn a_row_has_the_mean_current_of_the_coil_in_its_five_ticks() {
         let block = Block {
-            coil: [-1_250, 0, i16::MIN, 500].map(CoilCurrent),
+            coil_currents: [-1_250, 0, i16::MIN, 500].map(CoilCurrent),
             ..Block::default()
         };
         let mut samples = Samples::default();

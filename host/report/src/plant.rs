@@ -290,8 +290,8 @@ mod tests {
     use crepitus_scene::{Overrides, Scene};
     use std::path::Path;
 
-    /// Columns without a chart of their own: they stand in another one, or are counts.
-    const WITHOUT: [&str; 7] = [
+    /// Columns without a chart of their own: they stand in another one or in a table, or are counts.
+    const WITHOUT: [&str; 8] = [
         "hand_torque_nm",
         "hand_impact_nms",
         "leg_angle_rad",
@@ -299,6 +299,7 @@ mod tests {
         "intended_angle_rad",
         "limb_stretch_m",
         "stop_knocks",
+        "tank_held_back",
     ];
 
     #[test]

@@ -379,7 +379,7 @@ fn blocks() -> Vec<Example> {
         flags: BlockFlags::new(State::Armed, true, 3),
         samples,
         phases: core::array::from_fn(|n| EffectPhases(u16::try_from(257 * n).expect("small"))),
-        coil: [-1_200, 5, i16::MIN, 300].map(CoilCurrent),
+        coil_currents: [-1_200, 5, i16::MIN, 300].map(CoilCurrent),
     };
     let means = "Block { sequence: 65534, first_tick: 20000000000, revision: Revision(300), dropped: 140, \
                  flags: BlockFlags(30): armed, zeroed, start 3, samples, phases, coil }; sample n has count n - 2, model torque n/4 N·m, \

@@ -457,6 +457,24 @@ fn steps_too_long_to_see_are_warned_of() {
 }
 
 #[test]
+fn steps_longer_than_a_pitch_are_warned_of() {
+    let texture = "[effects.texture]\npitch_deg = 0.5";
+    let teeth = "[effects.cogwheel]\nmode = \"space\"\npitch_deg = 2.0";
+    let warned = |omega_rad_s: f64, step_s: &str, effect: &str| {
+        let motion = format!("kind = \"constant\"\nvelocity_rad_s = {omega_rad_s:?}");
+        let solver = format!("kind = \"exact-events\"\nstep_s = {step_s}");
+        let (_, summary) = simulate(&scene(0.05, &motion, &solver, effect));
+        summary
+            .warnings
+            .iter()
+            .any(|w| w.contains("longer than its pitch"))
+    };
+    assert!(warned(9.0, "1e-3", texture) && !warned(8.0, "1e-3", texture));
+    assert!(!warned(9.0, "5e-4", texture));
+    assert!(warned(36.0, "1e-3", teeth) && !warned(34.0, "1e-3", teeth));
+}
+
+#[test]
 fn a_joint_that_the_device_refuses_is_warned_of() {
     // Two counts of 512 lines are 71.35 µrad; (Ts − Tk)/kr is 72 and 70.
     for (stiffness, lines, refused) in [

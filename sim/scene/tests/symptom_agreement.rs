@@ -16,8 +16,11 @@ use random_scene::{Random, TICK_S, Tolerance, effects, motion};
 use std::convert::Infallible;
 use std::path::Path;
 
-/// Scenes of each symptom.
+/// Scenes of each of the ten forms of a symptom, numbered from zero: the number is the seed.
 const SCENES: u64 = 60;
+
+/// The same in the long mode.
+const LONG_SCENES: u64 = 550;
 
 /// Length of a scene, s.
 const END_S: f64 = 1.5;
@@ -160,10 +163,8 @@ fn compare(text: &str, tolerance: &Tolerance, worst: &mut Worst) -> Result<(), S
 fn agree(name: &str, form: &str, tolerance: &Tolerance) {
     let mut worst = Worst::default();
     let mut wrong = Vec::new();
-    let scenes = std::env::var("SYMPTOM_SCENES")
-        .ok()
-        .and_then(|n| n.parse().ok());
-    for seed in 0..scenes.unwrap_or(SCENES) {
+    let is_long = std::env::var_os("CREPITUS_LONG").is_some();
+    for seed in 0..if is_long { LONG_SCENES } else { SCENES } {
         let mut random = Random::new(seed, name, form);
         let effect = effects(name, form, &mut random);
         let jumps = if seed % 2 == 1 { 0.3 } else { 0.0 };

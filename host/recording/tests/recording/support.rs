@@ -68,12 +68,12 @@ pub(crate) fn plain(first_tick: u64, revision: u32, dropped: u32, start: u16) ->
                 .with(SampleFlags::BREAK, random.bool())
                 .with(SampleFlags::LATE, random.bool()),
         }),
-        coil: std::array::from_fn(
-            |n| match i16::try_from((first_tick / 20 + n as u64) % 400) {
+        coil_currents: std::array::from_fn(|n| {
+            match i16::try_from((first_tick / 20 + n as u64) % 400) {
                 Ok(ma) if ma > 0 => CoilCurrent(10 * ma - 2_000),
                 _ => CoilCurrent::NONE,
-            },
-        ),
+            }
+        }),
         ..Block::default()
     }
 }

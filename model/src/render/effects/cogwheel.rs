@@ -249,9 +249,8 @@ impl<F: Real> Law for Cogwheel<F> {
             Clock::Space(per_count, per_rest) => {
                 let at = self.angle(place, per_count, per_rest);
                 // Exactly on an edge it is on its upper side.
-                let before = |edge: u64| edge.wrapping_sub(at);
-                let low_from = self.with.low_from;
-                let on = [0, low_from].into_iter().find(|edge| before(*edge) < EDGE);
+                let edges = [0, self.with.low_from];
+                let on = edges.into_iter().find(|edge| edge.wrapping_sub(at) < EDGE);
                 if F::IS_SINGLE { at } else { on.unwrap_or(at) }
             }
         };
@@ -367,6 +366,16 @@ impl<F: Real> Cogwheel<F> {
         }
     }
 
+    /// Returns whether it is at an edge to rounding, on whichever side, or beyond it by so little: it has
+    /// not passed it yet.
+    fn is_at_edge(&self) -> bool {
+        let is_at = |edge: u64| {
+            let off = self.at.wrapping_sub(edge);
+            off.min(off.wrapping_neg()) < EDGE
+        };
+        !F::IS_SINGLE && (is_at(0) || is_at(self.with.low_from))
+    }
+
     #[inline]
     fn limits(&self) -> Limits<F> {
         Limits::both(if self.is_high {
@@ -391,14 +400,10 @@ impl<F: Real> Cogwheel<F> {
         } else {
             0
         };
-        let beyond = turn.distance(edge, self.at);
         // Noise at the edge of a tooth is no edge.
-        let flicker = if F::IS_SINGLE {
-            self.with.flicker
-        } else {
-            self.with.flicker.max(EDGE)
-        };
-        if matches!(self.with.clock, Clock::Space(..)) && beyond < flicker {
+        if matches!(self.with.clock, Clock::Space(..))
+            && (turn.distance(edge, self.at) < self.with.flicker || self.is_at_edge())
+        {
             return F::ZERO;
         }
         let fraction = turn.share(edge);
@@ -532,8 +537,12 @@ mod tests {
 
     /// Goes on by a number of counts in a tick, to this one; what happened, and when.
     fn go(law: &mut Cogwheel<f64>, timing: &Timing, to: i32, counts: i32) -> Vec<(Word, f64)> {
+        let delta_phi_rad = f64::from(counts) * timing.sight.rad_per_count;
+        let omega_rad_s = delta_phi_rad / timing.step_s;
         let shaft = ShaftStep {
-            delta_phi_rad: f64::from(counts) * timing.sight.rad_per_count,
+            delta_phi_rad,
+            omega_start_rad_s: omega_rad_s,
+            omega_end_rad_s: omega_rad_s,
             ..ShaftStep::default()
         };
         let scale = timing.scale().unwrap();
@@ -573,8 +582,11 @@ mod tests {
         }
         let (mut law, timing) = coarse(1, 0.0);
         law.rest(&Position::at(6));
-        assert!(go(&mut law, &timing, 7, 1).is_empty());
-        assert_eq!(go(&mut law, &timing, 8, 1), [(Word::Give, 1.0)]);
+        // At its end it may turn back, or stay.
+        for (count, counts) in [(7, 1), (8, 1), (8, 0), (7, -1), (8, 1)] {
+            assert!(go(&mut law, &timing, count, counts).is_empty(), "{count}");
+        }
+        assert_eq!(go(&mut law, &timing, 9, 1), [(Word::Give, 0.0)]);
         // Two counts on, an edge in their middle.
         assert!(go(&mut law, &timing, 15, 7).is_empty());
         assert_eq!(go(&mut law, &timing, 17, 2), [(Word::Catch, 0.5)]);

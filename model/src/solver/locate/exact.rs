@@ -78,10 +78,14 @@ impl<F: Real> Locate<F> for ExactEvents {
 /// rate² + 2·curvature·left, twice the curvature times what it lacks there. The limit itself still
 /// sticks. Rounding in f32 is coarser than what could be told apart: there a top at the limit breaks.
 #[inline]
-fn only_touches<F: Real>(square: F, curvature: F, limit_nm: F) -> bool {
-    // Of an angle that is a thousand times that of the spring.
-    let rounding_nm = F::from_f64(4096.0) * F::EPSILON * limit_nm;
-    curvature < F::ZERO && square <= -(F::TWO * curvature * rounding_nm)
+pub(super) fn only_touches<F: Real>(square: F, curvature: F, limit_nm: F) -> bool {
+    curvature < F::ZERO && square <= -(F::TWO * curvature * touch_nm(limit_nm))
+}
+
+/// Rounding of a torque at its limit, N·m: that of an angle which is a thousand times that of the spring.
+#[inline]
+pub(super) fn touch_nm<F: Real>(limit_nm: F) -> F {
+    F::from_f64(4096.0) * F::EPSILON * limit_nm
 }
 
 /// The first velocity match in [0, `length_s`], on a path of either shape.

@@ -12,7 +12,7 @@
 //! T is then a cubic in time without a useful closed form of its roots; the
 //! break is found like the match, by lower-bounding parabolas.
 
-use super::exact::{SEARCH_STEPS, first_match};
+use super::exact::{SEARCH_STEPS, first_match, only_touches, touch_nm};
 use super::{Locate, SlipPath, StickPath};
 use crate::joint::Sense;
 use crate::joint::shaft::{Quadratic, VelocityShape};
@@ -43,6 +43,9 @@ impl<F: Real> Locate<F> for ExactHermite {
         let time_s = if left > F::ZERO {
             first_reach(&outwards, limit_nm, length_s)?
         } else if left < -(F::LIMIT_SLACK * limit_nm) || outwards.rate > F::ZERO {
+            if left >= -(F::LIMIT_SLACK * limit_nm) && turns_back(&outwards, left, limit_nm) {
+                return None;
+            }
             F::ZERO
         } else {
             way_back(&outwards)?
@@ -69,6 +72,16 @@ fn first_reach<F: Real>(path: &StickPath<F, Quadratic<F>>, limit_nm: F, length_s
     for _ in 0..SEARCH_STEPS {
         let here = path.from(time_s);
         let left = limit_nm - here.torque_nm;
+        let touch_nm = touch_nm(limit_nm);
+        if left <= touch_nm && turns_back(&here, left, limit_nm) {
+            // Beyond its top, to where it is further from the limit than a touch.
+            let down_s = (F::from_f64(8.0) * touch_nm / -here.curvature).sqrt();
+            time_s += (here.rate / -here.curvature).at_least(F::ZERO) + down_s;
+            if time_s <= length_s {
+                continue;
+            }
+            return None;
+        }
         if left <= noise {
             // What rounding hides of the way is a straight line.
             let rest_s = if here.rate > F::ZERO {
@@ -92,6 +105,12 @@ fn first_reach<F: Real>(path: &StickPath<F, Quadratic<F>>, limit_nm: F, length_s
         return None;
     }
     None
+}
+
+/// Returns whether the torque turns back at its limit, which it only touches.
+fn turns_back<F: Real>(here: &StickPath<F, Quadratic<F>>, left: F, limit_nm: F) -> bool {
+    let square = here.rate * here.rate + F::TWO * here.curvature * left;
+    only_touches(square, here.curvature, limit_nm)
 }
 
 /// Time at which a torque that leaves its limit inwards, or along it, is back there on

@@ -196,7 +196,7 @@ fn stays_until_cleared(host: &mut Host, cause: &Cause) {
         cause.name
     );
     host.run(100);
-    let coil = host.last_block.expect("a block").coil;
+    let coil = host.last_block.expect("a block").coil_currents;
     assert_eq!(coil, [CoilCurrent::NONE; 4], "{}", cause.name);
     mend(host);
     for clears in [false, true] {
@@ -350,20 +350,20 @@ fn an_actuator_that_is_off_is_silent_and_measures_nothing() {
         assert!(!host.device.board().coil_is_driven());
     }
     assert_eq!(
-        host.last_block.expect("a block").coil,
+        host.last_block.expect("a block").coil_currents,
         [CoilCurrent::NONE; 4]
     );
     // On and off again while armed: it fades out, and is asleep from then on.
     host.set("vibration-actuator.render", 1.0);
     host.run(4_000);
     assert!(host.device.board().coil_is_driven());
-    let coil = host.last_block.expect("a block").coil;
+    let coil = host.last_block.expect("a block").coil_currents;
     assert!(coil.iter().all(|current| *current != CoilCurrent::NONE));
     host.set("vibration-actuator.render", 0.0);
     host.run(1_200);
     assert!(!host.device.board().coil_is_driven());
     assert_eq!(
-        host.last_block.expect("a block").coil,
+        host.last_block.expect("a block").coil_currents,
         [CoilCurrent::NONE; 4]
     );
     assert_eq!(host.device.board().drive().state(), State::Armed);

@@ -65,7 +65,7 @@ fn status(host: &mut Host) -> Status {
 /// Currents of the coil in the last blocks, mA.
 fn currents(host: &Host, blocks: usize) -> Vec<CoilCurrent> {
     let last = host.blocks.iter().rev().take(blocks);
-    last.flat_map(|block| block.coil).collect()
+    last.flat_map(|block| block.coil_currents).collect()
 }
 
 fn outputs_are_on(host: &Host) -> bool {

@@ -135,7 +135,7 @@ pub(crate) const CASES: [Case; 10] = [
         symptom: "spasticity",
         settings: "form = \"reflex\"\nthreshold_deg = 6.0\ngain_nm_per_rad = 4.0\nvelocity_shift_s = 0.1\ntorque_nm = 1.0\n",
         phases: &["reflex", "reflex-at-its-largest"],
-        most_cycles: 480,
+        most_cycles: 500,
     },
     Case {
         name: "clasp-knife, by torque",

@@ -27,7 +27,7 @@ impl Tank {
     pub(super) const FULL: Self = Self { level_j: TANK_J };
 
     /// σ, the share that is paid.
-    pub(super) fn share(&self) -> f64 {
+    pub(super) fn share(self) -> f64 {
         share(self.level_j)
     }
 

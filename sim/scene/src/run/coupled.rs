@@ -232,17 +232,7 @@ impl Run {
             for stage in &mut self.stages {
                 stage.work_j += stage.added_nm * turned;
             }
-            if self.cuts.is_empty() {
-                self.device.tick(time_s, &before, &after, &mut events);
-            } else {
-                let span = Span {
-                    start_s: time_s,
-                    length_s: self.tick_s,
-                    from: before,
-                    to: after,
-                };
-                self.device.tick_in_parts(&span, &self.cuts, &mut events);
-            }
+            self.render(time_s, (before, after), &mut events);
             // As a row, an event holds numbers.
             if !events.is_empty()
                 && let Some(diverged) = self.diverged(scene, time_s)
@@ -282,6 +272,21 @@ impl Run {
                 warnings: self.plant.warnings(),
             }),
         })
+    }
+
+    /// One tick of the device, in which the shaft has gone from one state to the next.
+    fn render(&mut self, start_s: f64, (from, to): (Body, Body), events: &mut Vec<Happened>) {
+        if self.cuts.is_empty() {
+            self.device.tick(start_s, &from, &to, events);
+            return;
+        }
+        let span = Span {
+            start_s,
+            length_s: self.tick_s,
+            from,
+            to,
+        };
+        self.device.tick_in_parts(&span, &self.cuts, events);
     }
 
     /// Writes the columns of the device and of the plant.

@@ -129,7 +129,7 @@ pub(super) struct Beyond {
     /// End of the first tick beyond, s.
     pub(super) first_s: Option<f64>,
     /// Time beyond, s.
-    pub(super) beyond_s: f64,
+    pub(super) lasted_s: f64,
     /// The torque that was furthest beyond, N·m.
     pub(super) most_nm: f64,
 }
@@ -140,7 +140,7 @@ impl Beyond {
         Self {
             limit_nm: LimitSettings::default().torque_nm,
             first_s: None,
-            beyond_s: 0.0,
+            lasted_s: 0.0,
             most_nm: 0.0,
         }
     }
@@ -150,7 +150,7 @@ impl Beyond {
     pub(super) fn note(&mut self, asked_nm: f64, (end_s, step_s): (f64, f64)) {
         if asked_nm.abs() > self.limit_nm {
             self.first_s.get_or_insert(end_s);
-            self.beyond_s += step_s;
+            self.lasted_s += step_s;
             if asked_nm.abs() > self.most_nm.abs() {
                 self.most_nm = asked_nm;
             }

@@ -399,7 +399,7 @@ fn torque_limit(scene: &Scene, beyond: &Beyond) -> Option<TorqueLimitSummary> {
         limit_nm: beyond.limit_nm,
         is_applied: scene.is_device,
         first_s,
-        beyond_s: beyond.beyond_s,
+        beyond_s: beyond.lasted_s,
         most_nm: beyond.most_nm,
     })
 }
@@ -569,6 +569,7 @@ fn run_warnings(scene: &Scene, totals: &Totals) -> Vec<String> {
     if let (Some(crepitus), SolverChoice::Ladder { step_s, .. }) = (&scene.crepitus, scene.solver) {
         warnings.extend(step_warnings(crepitus, step_s, totals.fastest_rad_s));
     }
+    warnings.extend(pitch_warnings(scene, totals.fastest_rad_s));
     warnings
 }
 
@@ -646,6 +647,31 @@ fn balance_warning(share: f64) -> Option<String> {
             share.abs()
         )
     })
+}
+
+/// Steps in which the shaft turns by more than what comes once in an angle: a law takes in one of them a step.
+fn pitch_warnings(scene: &Scene, fastest_rad_s: f64) -> Vec<String> {
+    if scene.solver == SolverChoice::Reference {
+        return Vec::new();
+    }
+    let effects = scene.effect_settings();
+    let texture = effects.texture.map(|s| ("texture", s.pitch_deg));
+    let teeth = effects.cogwheel.filter(|s| s.mode == 1);
+    let teeth = teeth.map(|s| ("cogwheel", s.pitch_deg));
+    let step_s = scene.step_s();
+    let turn_deg = (fastest_rad_s * step_s).to_degrees();
+    let passed = [texture, teeth].into_iter().flatten();
+    passed
+        .filter(|(_, pitch_deg)| turn_deg > *pitch_deg)
+        .map(|(name, pitch_deg)| {
+            format!(
+                "{name}: step longer than its pitch: at the highest speed, {fastest_rad_s:.3} rad/s, the joint turns by \
+                 {turn_deg:.3} degrees in a step of {:.1} µs, and its pitch is {pitch_deg} degrees; of several in a step \
+                 one is felt: choose a shorter step, or --solver reference",
+                step_s * 1e6
+            )
+        })
+        .collect()
 }
 
 /// Steps too long to see what happens within them.

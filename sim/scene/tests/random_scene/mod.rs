@@ -87,8 +87,7 @@ pub(crate) fn motion(random: &mut Random, end_s: f64, jumps: f64) -> String {
                     speed = random.between(-300.0, 300.0);
                 }
                 knots.push((time, left, speed));
-                // On a tick: within one nobody can see a jump.
-                let length = random.between(600.0, 6000.0).floor() * TICK_S;
+                let length = random.between(600.0, 6000.0) * TICK_S;
                 let next = if random.happens(0.3) {
                     speed
                 } else {
@@ -97,7 +96,11 @@ pub(crate) fn motion(random: &mut Random, end_s: f64, jumps: f64) -> String {
                 };
                 let next = next.clamp(-400.0, 400.0);
                 angle += 0.5 * (speed + next) * length;
-                time = ((time + length) / TICK_S).round() / 20_000.0;
+                // On a tick or within one.
+                time += length;
+                if random.happens(0.3) {
+                    time = (time / TICK_S).round() / 20_000.0;
+                }
                 speed = next;
             }
             knots.push((time, speed, speed));

@@ -212,7 +212,8 @@ impl Follower for Listening {
         self.next_tick = Some(block.first_tick + BLOCK_SAMPLES as u64);
         let has_chirped = |sample: &Sample| sample.flags.has(SampleFlags::CHIRP);
         self.chirped.extend(block.samples.iter().map(has_chirped));
-        self.amperes.extend(block.coil.map(CoilCurrent::amperes));
+        self.amperes
+            .extend(block.coil_currents.map(CoilCurrent::amperes));
         Ok(())
     }
 
