@@ -13,3 +13,10 @@ pub mod characters;
 pub mod input;
 pub mod output;
 pub mod table;
+
+use std::path::Path;
+
+/// A path as JSON can have it: what is not UTF-8 in it becomes U+FFFD, as JSON has no bytes.
+pub fn json_path(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}

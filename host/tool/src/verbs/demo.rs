@@ -16,6 +16,7 @@ use crate::wav::Wav;
 use clap::Args;
 use crepitus_client::{Begin, Client, RequestKind};
 use crepitus_connection::Simulated;
+use crepitus_files::json_path;
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};
@@ -240,7 +241,7 @@ fn done(
     let wall_s = wall.as_secs_f64();
     if as_json {
         return print_json(&json!({
-            "out": out,
+            "out": json_path(out),
             "device_s": device_s,
             "wall_s": wall_s,
             "summary": reported.summary,

@@ -4,6 +4,7 @@ use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
 use crate::recorded::{Clash, beside, written};
 use clap::{Args, ValueEnum};
+use crepitus_files::json_path;
 use crepitus_recording::{COLUMNS, Damage, Recording, Write, mcap_writer, parquet_writer};
 use serde_json::json;
 use std::fs::File;
@@ -96,7 +97,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let totals = recording.books().totals;
     if as_json {
         return print_json(
-            &json!({ "out": out, "rows": rows, "telemetry": totals, "warnings": warnings }),
+            &json!({ "out": json_path(&out), "rows": rows, "telemetry": totals, "warnings": warnings }),
         );
     }
     let what = match format {

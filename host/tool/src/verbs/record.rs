@@ -8,6 +8,7 @@ use crate::line::connect_to_arm;
 use crate::recorded::{Recorded, print_ended, report_command};
 use clap::Args;
 use crepitus_client::Unheard;
+use crepitus_files::json_path;
 use crepitus_recording::Totals;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -57,7 +58,7 @@ fn kept(failure: Failure, file: &Path, totals: &Totals) -> Failure {
         totals.received,
         report_command(file)
     );
-    let fields = [("file", json!(file)), ("telemetry", json!(totals))];
+    let fields = [("file", json!(json_path(file))), ("telemetry", json!(totals))];
     let fields = fields.map(|(name, value)| (name.to_owned(), value));
     Failure::Kept(text, fields.into_iter().collect())
 }
@@ -109,7 +110,9 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     match totals {
         None if as_json => print_json(&json!({ "file": null })),
         None => print("no sample came: nothing was recorded\n"),
-        Some(totals) if as_json => print_json(&json!({ "file": file, "telemetry": totals })),
+        Some(totals) if as_json => {
+            print_json(&json!({ "file": json_path(file), "telemetry": totals }))
+        }
         Some(totals) => print_ended(file, &totals),
     }
 }

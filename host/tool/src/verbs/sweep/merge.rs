@@ -3,6 +3,7 @@
 use super::{store_failure, table, warn_of_failed, words};
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
+use crepitus_files::json_path;
 use crepitus_sweep::{Format, Store};
 use serde_json::json;
 use std::path::PathBuf;
@@ -28,7 +29,7 @@ pub(super) fn run(folders: &[PathBuf], format: Format, as_json: bool) -> Result<
     let sweep = store.identity();
     if as_json {
         return print_json(&json!({
-            "table": written.file,
+            "table": json_path(&written.file),
             "bytes": written.bytes,
             "runs": sweep.runs,
             "failed": written.failed,
