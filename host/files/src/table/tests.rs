@@ -241,7 +241,7 @@ fn no_bytes_panic() {
             state = state
                 .wrapping_mul(6_364_136_223_846_793_005)
                 .wrapping_add(1);
-            bytes.extend_from_slice(parts[(state >> 60) as usize]);
+            bytes.extend_from_slice(parts[usize::try_from(state >> 60).unwrap()]);
         }
         state = state
             .wrapping_mul(6_364_136_223_846_793_005)
