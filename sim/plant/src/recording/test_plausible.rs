@@ -15,7 +15,11 @@ fn rows(factor: f64) -> Vec<f64> {
 fn csv(rows: &[f64]) -> String {
     let lines = rows.iter().enumerate();
     lines.fold("time,knee\n".to_owned(), |mut text, (i, angle)| {
-        let _ = writeln!(text, "{},{angle}", f64::from(u32::try_from(i).unwrap()) / 80.0);
+        let _ = writeln!(
+            text,
+            "{},{angle}",
+            f64::from(u32::try_from(i).unwrap()) / 80.0
+        );
         text
     })
 }
