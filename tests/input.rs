@@ -204,3 +204,73 @@ fn a_rule_is_not_told_as_a_fact() {
     ]));
     assert!(printed.contains("seed must be a whole number"), "{printed}");
 }
+
+/// JSON has no bytes for a path that is not UTF-8; the work that was done is reported all the same.
+#[cfg(target_os = "linux")]
+#[test]
+fn paths_that_are_not_utf_8_are_printed_as_json() {
+    use std::ffi::{OsStr, OsString};
+    use std::os::unix::ffi::OsStrExt;
+    let home = tempfile::tempdir().unwrap();
+    let odd = home.path().join(OsStr::from_bytes(b"lab\xff"));
+    std::fs::create_dir(&odd).unwrap();
+    let at = |name: &str| odd.join(name).into_os_string();
+    let words = |text: &str| -> Vec<OsString> { text.split(' ').map(OsString::from).collect() };
+    let run = |text: &str, last: &[OsString]| {
+        let all = [&words(text)[..], last].concat();
+        let output = support::crepitus()
+            .current_dir(home.path())
+            .args(&all)
+            .arg("--json")
+            .output()
+            .unwrap();
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "{all:?}: {}",
+            stderr(&output)
+        );
+        let printed: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert!(
+            printed.to_string().contains("lab\u{fffd}"),
+            "{all:?}: {printed}"
+        );
+    };
+    let wav = [at("run"), "--wav".into(), at("knee.wav")];
+    run("run fig8-5-hand --set duration_s=0.2 --out", &wav);
+    run(
+        "effects fig8-3-cuff --set duration_s=0.2 --out",
+        &[at("effects")],
+    );
+    run("stability --case H01 --out", &[at("stability")]);
+    let sweep = "sweep fig8-5-hand --set duration_s=0.05 --format csv --vary effects.crepitus.static_torque_nm=1,2 --out";
+    run(sweep, &[at("sweep")]);
+    let half = |shard: &str, name: &str| [at(name), "--shard".into(), shard.into()];
+    run(sweep, &half("1/2", "one"));
+    run(sweep, &half("2/2", "two"));
+    run("sweep --format csv --merge", &[at("one"), at("two")]);
+    run("record --device sim --for 100ms", &[at("knee")]);
+    run("report --out", &[at("report"), at("knee")]);
+    run("export --format csv", &[at("knee")]);
+    run("demo --out", &[at("demo")]);
+}
+
+/// A page that could not be written is no success.
+#[cfg(target_os = "linux")]
+#[test]
+fn help_on_a_full_disk_is_a_failure() {
+    for arguments in [&["--help"][..], &["--version"], &["run", "--help"]] {
+        let full = std::fs::File::options()
+            .write(true)
+            .open("/dev/full")
+            .unwrap();
+        let output = support::crepitus()
+            .args(arguments)
+            .stdout(full)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        assert!(stderr(&output).contains("stdout cannot be written"));
+        assert_eq!(run(arguments).status.code(), Some(0));
+    }
+}

@@ -229,6 +229,71 @@ fn a_bad_overlay_is_refused_before_the_run() {
     );
 }
 
+/// The unit of a header counts, the start is said, and a name may have a comma or be a position.
+#[test]
+fn an_overlay_is_read_as_its_file_says() {
+    let home = tempfile::tempdir().unwrap();
+    let first = home.path().join("first");
+    played("slow-examination", &first, &[]);
+    let (header, rows) = csv(&first.join("trace.csv"));
+    let column = |name: &str| header.iter().position(|other| other == name).unwrap();
+    let [time, angle, torque] = ["t_s", "angle_rad", "torque_nm"].map(column);
+    let number = |row: &[String], at: usize| row[at].parse::<f64>().unwrap();
+    let mut text =
+        String::from("Coordinates\ninDegrees=yes\nendheader\ntime\tknee\tT, N·m\tT\tT\n");
+    for row in rows.iter().step_by(200) {
+        let (t, deg) = (1.0 + number(row, time), number(row, angle).to_degrees());
+        let nm = number(row, torque);
+        text += &format!("{t}\t{deg}\t{nm}\t{nm}\t{nm}\n");
+    }
+    let file = home.path().join("knee.mot.txt");
+    fs::write(&file, text).unwrap();
+    let overlaid = |name: &str, columns: &str| {
+        let out = home.path().join(name);
+        run(&[
+            "run",
+            "slow-examination",
+            "--set",
+            "duration_s=1",
+            "--json",
+            "--out",
+            out.to_str().unwrap(),
+            "--overlay",
+            file.to_str().unwrap(),
+            "--overlay-columns",
+            columns,
+        ])
+    };
+    for (name, columns) in [
+        ("a", "t_s=time,angle_rad=knee,torque_nm=\"T, N·m\""),
+        ("b", "t_s=#1,angle_rad=#2,torque_nm=#5"),
+    ] {
+        let output = overlaid(name, columns);
+        let said = stderr(&output);
+        assert!(output.status.success(), "{said}");
+        for part in [
+            "inDegrees=yes",
+            "taken as deg",
+            "the times begin at 1 s, which is laid at 0 s",
+        ] {
+            assert!(said.contains(part), "{said}: {part}");
+        }
+        let printed: Value = serde_json::from_str(&stdout(&output)).unwrap();
+        for difference in printed["overlay"].as_array().unwrap() {
+            let rms = difference["rms_difference"].as_f64().unwrap();
+            assert!(rms < 1e-9, "{difference}");
+        }
+        assert_eq!(printed["overlay"].as_array().unwrap().len(), 2);
+    }
+    let output = overlaid("c", "t_s=time,torque_nm=T");
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(
+        said.contains("used twice, for columns 4 and 5") && said.contains("\"#4\""),
+        "{said}"
+    );
+}
+
 #[test]
 fn a_run_can_be_heard() {
     let home = tempfile::tempdir().unwrap();

@@ -5,7 +5,7 @@
 
 use crepitus_plant::Motion;
 use crepitus_plant::piece::Piece;
-use crepitus_plant::recording::{self, AngleUnit, Samples, Source};
+use crepitus_plant::recording::{self, AngleUnit, Angles, Quantity, Samples, Source};
 use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -57,12 +57,12 @@ pub fn recorded_knee() -> Result<Hand, String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let path = path.join(FILE);
     let (samples, source) = if path.exists() {
-        let samples = recording::read(&Source {
-            path: &path,
-            time_column: "time_s",
-            angle_column: "knee_flexion_deg",
-            unit: Some(AngleUnit::Deg),
-        });
+        let samples = recording::read(&Source::new(
+            &path,
+            "time_s",
+            "knee_flexion_deg",
+            Quantity::Angles(Angles::of(Some(AngleUnit::Deg))),
+        ));
         (samples.map_err(|e| e.to_string())?, format!("{FILE}, "))
     } else {
         (synthetic_walk(), "synthetic (no recording found), ".into())
@@ -98,7 +98,7 @@ fn synthetic_walk() -> Samples {
     Samples {
         angle_rad: time_s.iter().map(|&t| angle(t)).collect(),
         time_s,
-        warnings: Vec::new(),
+        ..Samples::default()
     }
 }
 

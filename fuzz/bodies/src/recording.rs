@@ -7,10 +7,12 @@
 //! - the smooth motion is finite, and its pieces follow each other from the
 //!   first sample to the last without a gap.
 //!
-//! The first byte chooses reader, unit and cutoff; the rest is the file. Its
+//! The first byte chooses unit, cutoff, gaps and unit of time; the rest is the file. Its
 //! columns are `t` and `a`.
 
-use crepitus_plant::recording::{self, AngleUnit, CubicSegment, MIN_SAMPLES, Samples, Source};
+use crepitus_plant::recording::{
+    self, AngleUnit, Angles, CubicSegment, MIN_SAMPLES, Quantity, Samples, Source, TimeUnit,
+};
 use std::io::Write;
 use tempfile::Builder;
 
@@ -23,7 +25,7 @@ pub fn body(data: &[u8]) {
         return;
     };
     let suffix = [".csv", ".mot"][usize::from(how & 1)];
-    let unit = [AngleUnit::Deg, AngleUnit::Rad][usize::from(how >> 1 & 1)];
+    let unit = [Some(AngleUnit::Deg), Some(AngleUnit::Rad), None][usize::from(how >> 1) % 3];
     let mut on_disk = Builder::new()
         .prefix("crepitus-fuzz-")
         .suffix(suffix)
@@ -31,10 +33,9 @@ pub fn body(data: &[u8]) {
         .expect("a temporary file");
     on_disk.write_all(file).expect("room for a small file");
     let source = Source {
-        path: on_disk.path(),
-        time_column: "t",
-        angle_column: "a",
-        unit: Some(unit),
+        max_gap_s: f64::from(how >> 5 & 1),
+        time_unit: (how >> 6 & 1 == 1).then_some(TimeUnit::Clock),
+        ..Source::new(on_disk.path(), "t", "a", Quantity::Angles(Angles::of(unit)))
     };
     match recording::read(&source) {
         Err(error) => assert!(!error.to_string().trim().is_empty(), "{error:?}"),

@@ -4,9 +4,19 @@
 //!
 //! ```text
 //! a path ──> input   a regular file up to a stated size, or an error that says what it is
+//! bytes  ──> table   names, units and rows, in whatever form a laboratory writes them
 //! a path <── output  a folder that this program owns: nothing foreign is replaced or removed
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod characters;
 pub mod input;
 pub mod output;
+pub mod table;
+
+use std::path::Path;
+
+/// A path as JSON can have it: what is not UTF-8 in it becomes U+FFFD, as JSON has no bytes.
+pub fn json_path(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}

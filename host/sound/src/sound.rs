@@ -3,7 +3,7 @@
 use crate::high_pass::{HIGH_PASS_HZ, HighPass};
 use crate::info_chunk;
 use crate::resampler::{PASSED, Resampler};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -82,10 +82,16 @@ impl Kept {
     }
 }
 
+/// Writes a path as JSON can have it.
+fn path<S: Serializer>(file: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&crepitus_files::json_path(file))
+}
+
 /// Level, length and band of a sound.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SoundSummary {
     /// Path of the file.
+    #[serde(serialize_with = "path")]
     pub file: PathBuf,
     /// Sampling rate, Hz.
     pub rate_hz: u32,

@@ -26,20 +26,37 @@ mod wav;
 
 use clap::Parser;
 use cli::Cli;
+use failure::Failure;
 use std::env;
+use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let arguments = pictures::joined(env::args_os());
-    let cli = Cli::try_parse_from(&arguments).unwrap_or_else(|error| {
+    let cli = Cli::try_parse_from(&arguments).map_err(|error| {
         // The error repeats the arguments: parse them again, escaped.
         let shown = arguments
             .iter()
             .map(|argument| safe_text::message(&argument.to_string_lossy()));
-        Cli::try_parse_from(shown).err().unwrap_or(error).exit()
+        Cli::try_parse_from(shown).err().unwrap_or(error)
     });
+    let cli = match cli {
+        Ok(cli) => cli,
+        Err(error) => return refused(&error),
+    };
     match cli.verb.run(cli.json) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(cli.json),
+    }
+}
+
+/// Prints the help that was asked for, or what is wrong with the arguments.
+fn refused(error: &clap::Error) -> ExitCode {
+    let printed = error.print().and_then(|()| io::stdout().flush());
+    match printed {
+        Err(failed) if !error.use_stderr() && failed.kind() != ErrorKind::BrokenPipe => {
+            Failure::Work(format!("stdout cannot be written: {failed}")).report(false)
+        }
+        _ => ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2)),
     }
 }

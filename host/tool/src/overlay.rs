@@ -3,7 +3,8 @@
 use crate::cli::key_and_value;
 use crate::failure::{Failure, warn};
 use clap::Args;
-use crepitus_plant::recording::{self, RecordingError};
+use crepitus_files::table::list;
+use crepitus_plant::recording::{self, AngleUnit, Angles, RecordingError, Samples, Source};
 use crepitus_report::{Difference, Measured, Quantity};
 use crepitus_scene::trace::Column;
 use std::path::{Path, PathBuf};
@@ -11,33 +12,35 @@ use std::path::{Path, PathBuf};
 /// The name of the times, in a trace and in a mapping.
 const TIME: &str = "t_s";
 
-/// Names of curves in a mapping: those of a trace, and angles in degrees. With the factor to the
-/// units of the trace.
-const NAMES: [(&str, Quantity, f64); 7] = [
-    ("angle_rad", Quantity::Angle, 1.0),
-    ("angle_deg", Quantity::Angle, std::f64::consts::PI / 180.0),
-    ("omega_rad_s", Quantity::Velocity, 1.0),
-    (
-        "omega_deg_s",
-        Quantity::Velocity,
-        std::f64::consts::PI / 180.0,
-    ),
-    ("torque_nm", Quantity::Torque, 1.0),
-    ("hand_torque_nm", Quantity::HandTorque, 1.0),
-    ("motor_torque_nm", Quantity::MotorTorque, 1.0),
+/// Names of curves in a mapping: those of a trace, and angles in degrees. With the unit of an angle.
+const NAMES: [(&str, Quantity, Option<AngleUnit>); 7] = [
+    ("angle_rad", Quantity::Angle, Some(AngleUnit::Rad)),
+    ("angle_deg", Quantity::Angle, Some(AngleUnit::Deg)),
+    ("omega_rad_s", Quantity::Velocity, Some(AngleUnit::Rad)),
+    ("omega_deg_s", Quantity::Velocity, Some(AngleUnit::Deg)),
+    ("torque_nm", Quantity::Torque, None),
+    ("hand_torque_nm", Quantity::HandTorque, None),
+    ("motor_torque_nm", Quantity::MotorTorque, None),
 ];
 
 /// Measured curves, and how to read them.
 #[derive(Debug, Default, Args)]
 pub(crate) struct Overlay {
-    /// Lay measured curves over those of the run: a CSV file, or OpenSim's .mot or .sto.
+    /// Lay measured curves over those of the run: a table such as CSV, or OpenSim's .mot or .sto, whose header
+    /// names the unit of angles.
     #[arg(id = "overlay", long = "overlay", value_name = "FILE")]
     file: Option<PathBuf>,
 
     /// Columns of that file by ours: t_s, angle_rad or angle_deg, omega_rad_s or omega_deg_s, torque_nm,
-    /// hand_torque_nm, motor_torque_nm [default: those with these names].
-    #[arg(id = "overlay-columns", long = "overlay-columns", value_name = "OURS=THEIRS", value_delimiter = ',', value_parser = key_and_value, requires = "overlay")]
-    columns: Vec<(String, String)>,
+    /// hand_torque_nm, motor_torque_nm [default: those with these names]. THEIRS is a name, in quotes if it has a
+    /// comma (torque_nm="T, N·m"), or a position (torque_nm=#4).
+    #[arg(
+        id = "overlay-columns",
+        long = "overlay-columns",
+        value_name = "OURS=THEIRS",
+        requires = "overlay"
+    )]
+    columns: Vec<String>,
 
     /// A factor of a column, -1 where it counts the other way round.
     #[arg(id = "overlay-scale", long = "overlay-scale", value_name = "OURS=FACTOR", value_delimiter = ',', value_parser = key_and_value, requires = "overlay",
@@ -87,15 +90,43 @@ impl Overlay {
         };
         let is_mapped = mapped.iter().any(|(name, _)| name != TIME);
         let mut measured: Vec<Measured> = Vec::new();
+        let mut first_s = None;
+        let mut notes: Vec<String> = Vec::new();
+        let mut said = |note: &str| {
+            if !notes.iter().any(|known| known == note) {
+                warn(format!("{}: {note}", file.display()));
+                notes.push(note.to_owned());
+            }
+        };
         let mut missing = None;
         for (ours, theirs) in wanted {
-            let Some((_, quantity, factor)) = NAMES.iter().find(|(name, ..)| *name == ours) else {
+            let Some((_, quantity, unit)) = NAMES.iter().find(|(name, ..)| *name == ours) else {
                 return Err(unknown("--overlay-columns", ours));
             };
-            let values = match recording::read_values(file, time, theirs) {
+            let of = |list: &[(String, f64)], or: f64| {
+                list.iter()
+                    .find(|(name, _)| name == ours)
+                    .map_or(or, |(_, x)| *x)
+            };
+            let (scale, offset) = (of(&scales, 1.0), of(&offsets, 0.0));
+            let in_file = match (quantity, unit) {
+                (Quantity::Angle, Some(unit)) => recording::Quantity::Angles(Angles {
+                    yields_to_header: true,
+                    factor: scale,
+                    offset_deg: in_deg(*unit, offset),
+                    ..Angles::of(Some(*unit))
+                }),
+                _ => recording::Quantity::Number,
+            };
+            let values = match recording::read(&Source::new(file, time, theirs, in_file)) {
                 Ok(values) => values,
                 // Without a mapping: what the file has.
-                Err(error @ RecordingError::MissingColumn { role: "column", .. }) if !is_mapped => {
+                Err(
+                    error @ RecordingError::MissingColumn {
+                        role: "column" | "angle_column",
+                        ..
+                    },
+                ) if !is_mapped => {
                     missing = Some(error);
                     continue;
                 }
@@ -107,22 +138,20 @@ impl Overlay {
                 )));
             }
             check(*quantity, ours, columns)?;
+            values.read_as.iter().for_each(|note| said(note));
             values.warnings.iter().for_each(warn);
-            let of = |list: &[(String, f64)], or: f64| {
-                list.iter()
-                    .find(|(name, _)| name == ours)
-                    .map_or(or, |(_, x)| *x)
-            };
-            let (scale, offset) = (of(&scales, 1.0), of(&offsets, 0.0));
+            first_s = Some(values.first_s);
             measured.push(Measured {
                 quantity: *quantity,
+                value: in_trace(*quantity, *unit, &values, (scale, offset)),
                 time_s: values.time_s.iter().map(|t| t + self.shift_s).collect(),
-                value: values
-                    .value
-                    .iter()
-                    .map(|x| factor * (scale * x + offset))
-                    .collect(),
             });
+        }
+        if let Some(first_s) = first_s.filter(|first_s| *first_s != self.shift_s) {
+            said(&format!(
+                "the times begin at {first_s} s, which is laid at {} s of the run (--overlay-shift)",
+                self.shift_s
+            ));
         }
         match (measured.is_empty(), missing) {
             (true, Some(error)) => Err(failed(&error)),
@@ -154,15 +183,58 @@ fn unknown(option: &str, name: &str) -> Failure {
     ))
 }
 
-fn mapping(columns: &[(String, String)]) -> Result<Vec<(String, String)>, Failure> {
-    for (i, (name, _)) in columns.iter().enumerate() {
-        if columns.iter().skip(i + 1).any(|(other, _)| other == name) {
-            return Err(Failure::Input(format!(
-                "--overlay-columns: {name} is named twice"
-            )));
+fn mapping(columns: &[String]) -> Result<Vec<(String, String)>, Failure> {
+    let refused = |reason: String| Failure::Input(format!("--overlay-columns: {reason}"));
+    let mut mapped: Vec<(String, String)> = Vec::new();
+    for part in columns {
+        for pair in list(part).map_err(refused)? {
+            let (name, column) = key_and_value(&pair).map_err(refused)?;
+            if mapped.iter().any(|(other, _)| *other == name) {
+                return Err(refused(format!("{name} is named twice")));
+            }
+            mapped.push((name, column));
         }
     }
-    Ok(columns.to_vec())
+    Ok(mapped)
+}
+
+fn in_deg(unit: AngleUnit, angle: f64) -> f64 {
+    match unit {
+        AngleUnit::Deg => angle,
+        AngleUnit::Rad => angle.to_degrees(),
+    }
+}
+
+/// The values in the unit of a trace: factor and offset are in the unit of our name.
+fn in_trace(
+    quantity: Quantity,
+    unit: Option<AngleUnit>,
+    samples: &Samples,
+    (scale, offset): (f64, f64),
+) -> Vec<f64> {
+    const PER_DEG: f64 = std::f64::consts::PI / 180.0;
+    let to_rad = |unit| match unit {
+        Some(AngleUnit::Deg) => PER_DEG,
+        _ => 1.0,
+    };
+    let (named, values) = (to_rad(unit), samples.angle_rad.iter());
+    match quantity {
+        // In rad already.
+        Quantity::Angle => values.map(|x| scale * x + named * offset).collect(),
+        Quantity::Velocity => {
+            // A table of speeds has the unit of its angles.
+            let in_file = to_rad(samples.header_unit.or(unit));
+            if in_file != named {
+                warn(
+                    "--overlay: the header's inDegrees names another unit than the column's name; the header counts",
+                );
+            }
+            values
+                .map(|x| in_file * scale * x + named * offset)
+                .collect()
+        }
+        _ => values.map(|x| scale * x + offset).collect(),
+    }
 }
 
 fn numbers(option: &str, list: &[(String, String)]) -> Result<Vec<(String, f64)>, Failure> {

@@ -2,6 +2,7 @@
 
 use crate::overlay;
 use crate::wav;
+use crepitus_files::json_path;
 use crepitus_report::Difference;
 use crepitus_sound::SoundSummary;
 use serde::Serialize;
@@ -20,7 +21,7 @@ pub(crate) struct Reported<S> {
 impl<S: Serialize> Reported<S> {
     /// The JSON of `--json`. `overlay` and `sound` are there only where the option was given.
     pub(crate) fn json(&self, out: &Path) -> Value {
-        let mut printed = json!({ "out": out, "summary": self.summary });
+        let mut printed = json!({ "out": json_path(out), "summary": self.summary });
         if let Some(sound) = &self.sound {
             printed["sound"] = json!(sound);
         }

@@ -11,6 +11,7 @@ pub(crate) use section::{Range, Section};
 pub(crate) use writer::quoted;
 
 use crate::error::{Origin, SceneError};
+use crepitus_files::characters::first_look_alike;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -61,11 +62,17 @@ impl Document {
     /// Parses `text`, which stands in `file`.
     pub(crate) fn parse(file: &Path, text: &str) -> Result<Self, SceneError> {
         let lines = Lines::of(text);
-        let error = |span: Option<std::ops::Range<usize>>, message: &str| SceneError {
-            file: file.to_owned(),
-            origin: span.map(|s| Origin::Line(lines.line(s.start))),
-            key: String::new(),
-            message: format!("this is not valid TOML: {}", message.trim_end()),
+        let error = |span: Option<std::ops::Range<usize>>, message: &str| {
+            let advice = span.clone().and_then(|span| advice(text, span.start));
+            SceneError {
+                file: file.to_owned(),
+                origin: span.map(|s| Origin::Line(lines.line(s.start))),
+                key: String::new(),
+                message: format!(
+                    "this is not valid TOML: {}",
+                    advice.unwrap_or_else(|| message.trim_end().to_owned())
+                ),
+            }
         };
         let table = DeTable::parse(text).map_err(|e| error(e.span(), e.message()))?;
         Ok(Self {
@@ -180,6 +187,46 @@ impl Document {
             table = inner;
         }
     }
+}
+
+/// Explains the error at a byte of a text by a character in its line that only looks like one of
+/// TOML, or by a backslash in double quotes, as paths of Windows have it.
+fn advice(text: &str, at: usize) -> Option<String> {
+    let at = (0..=at.min(text.len()))
+        .rev()
+        .find(|at| text.is_char_boundary(*at))?;
+    let (before, after) = text.split_at(at);
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    let end = after.find('\n').map_or(text.len(), |end| at + end);
+    let line = text.get(start..end)?;
+    if let Some((column, found)) = first_look_alike(line) {
+        return Some(format!(
+            "column {column} has {}, write {}",
+            found.name, found.write
+        ));
+    }
+    let mut quoted = false;
+    let mut chars = line.chars().enumerate().peekable();
+    while let Some((place, c)) = chars.next() {
+        match c {
+            '\'' | '#' if !quoted => return None,
+            '"' => quoted = !quoted,
+            '\\' if quoted => {
+                let next = chars.next().map(|(_, next)| next);
+                let is_escape = next.is_some_and(|next| "btnfre\"\\".contains(next));
+                if !is_escape {
+                    return Some(format!(
+                        "column {} has a backslash (\\), which begins an escape between double quotes; write a \
+                         path with single quotes ('C:\\Users\\knee.csv') or with forward slashes \
+                         (\"C:/Users/knee.csv\")",
+                        place + 1
+                    ));
+                }
+            }
+            _ => {}
+        }
+    }
+    None
 }
 
 /// Line numbers of byte positions.

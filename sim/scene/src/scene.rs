@@ -120,7 +120,7 @@ impl Scene {
         let root = document.section();
 
         check_version(&root)?;
-        let title = root.text("title")?.to_owned();
+        let title = title(&root)?;
         let description = root
             .optional_text("description")?
             .map(|d| d.trim().to_owned());
@@ -276,6 +276,17 @@ impl Scene {
     pub fn is_held(&self) -> bool {
         self.motion_kind != MotionKind::Released
     }
+}
+
+/// The title, or the name of the file without its ending, which is noted.
+fn title(root: &Section<'_>) -> Result<String, SceneError> {
+    if let Some(title) = root.optional_text("title")? {
+        return Ok(title.to_owned());
+    }
+    let name = root.file().file_stem().unwrap_or_default();
+    let title = name.to_string_lossy().into_owned();
+    root.note("title", Value::Text(title.clone()));
+    Ok(title)
 }
 
 /// The text of a file.

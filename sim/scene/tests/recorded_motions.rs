@@ -205,6 +205,157 @@ fn nonsense_is_refused_with_its_key() {
     }
 }
 
+/// What a laboratory's file says of itself is taken, and said in the summary of the run.
+#[test]
+fn the_form_of_a_file_is_taken_from_it_and_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let angle = |i: i32| 50.0 + 40.0 * (f64::from(i) * std::f64::consts::PI / 100.0).sin();
+    let mut dynamometer = String::from(
+        "Test      : knee, passive, 60 deg/s\r\nSamples   : 400 at 100 Hz\r\n\r\n      Time  Torque  Position\r\n      \
+         mSec     N-m   Degrees\r\n",
+    );
+    let mut motion = String::from("Coordinates\ninDegrees=yes\n  endheader\ntime\thip knee\n");
+    for i in 0..400 {
+        let _ = write!(
+            dynamometer,
+            "{:10} {:8.2} {:8.2}\r\n",
+            10 * i,
+            5.7,
+            angle(i)
+        );
+        let _ = writeln!(motion, "{}\t1\t{}", f64::from(i) / 100.0, angle(i));
+    }
+    std::fs::write(folder.path().join("d.txt"), dynamometer).unwrap();
+    std::fs::write(folder.path().join("k.mot.txt"), motion).unwrap();
+    let scene = |keys: &str| {
+        let text = format!(
+            "version = 1\nduration_s = 3.9\n[motion]\nkind = \"recording\"\n{keys}\n[solver]\n\
+             kind = \"exact-events\"\nstep_s = 5e-5\n[effects.crepitus]\npreset = \"coarse\"\n"
+        );
+        Scene::parse(
+            &folder.path().join("walk.toml"),
+            &text,
+            &Overrides::default(),
+        )
+        .map_err(|e| e.to_string())
+    };
+    let of_table = "file = \"d.txt\"\ntime_column = \"Time\"\nangle_column = \"Position\"";
+    let of_motion = "file = \"k.mot.txt\"\ntime_column = \"time\"\nangle_column = \"knee\"";
+    for (keys, said) in [
+        (
+            of_table.to_owned(),
+            &[
+                "line 4",
+                "blanks",
+                "line 5 has the units",
+                "times are in ms",
+                "in deg",
+            ][..],
+        ),
+        (
+            format!("{of_table}\ntime_unit = \"ms\"\nunit = \"deg\""),
+            &["line 4", "blanks", "line 5"],
+        ),
+        (
+            of_motion.to_owned(),
+            &["blanks, the rows by tabs", "the header (inDegrees=yes)"],
+        ),
+    ] {
+        let scene = scene(&keys).unwrap();
+        assert_eq!(scene.title, "walk");
+        let [lowest, highest] =
+            (0..390).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], i| {
+                let deg = scene.motion.at(f64::from(i) / 100.0).phi_rad.to_degrees();
+                [low.min(deg), high.max(deg)]
+            });
+        assert!(
+            (lowest - 10.0).abs() < 0.5 && (highest - 90.0).abs() < 0.5,
+            "{lowest} {highest}"
+        );
+        let read_as = &scene.data.as_ref().unwrap().read_as;
+        assert_eq!(read_as.len(), said.len(), "{read_as:?}");
+        for (found, part) in read_as.iter().zip(said) {
+            assert!(found.contains(part), "{found}: {part}");
+        }
+        assert!(scene.as_run.contains("unit = \"deg\""), "{}", scene.as_run);
+        assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    }
+    for (keys, key, part) in [
+        (
+            format!("{of_motion}\nangle_column = \"k\""),
+            "",
+            "duplicate key",
+        ),
+        (
+            format!("{of_table}\ntime_unit = \"clock\""),
+            "`motion.time_unit`",
+            "time of day",
+        ),
+        (
+            format!("{of_table}\ntime_unit = \"days\""),
+            "`motion.time_unit`",
+            "allowed are s, ms, us, min and clock",
+        ),
+        (
+            format!("{of_table}\nmax_gap_s = 60"),
+            "`motion.max_gap_s`",
+            "up to 10",
+        ),
+    ] {
+        let error = scene(&keys).map(|_| ()).unwrap_err();
+        assert!(error.contains(key) && error.contains(part), "{error}");
+    }
+    write(folder.path(), "cycle.csv", 1);
+    let keys = "file = \"cycle.csv\"\ntime_column = \"t\"\nangle_column = \"angle\"";
+    let error = scene(keys).map(|_| ()).unwrap_err();
+    assert!(
+        error.contains("`motion.unit`") && error.contains("write unit = \"deg\""),
+        "{error}"
+    );
+}
+
+/// Characters that only look like those of TOML are named, with their column and what to write.
+#[test]
+fn toml_of_word_processors_and_of_windows_is_explained() {
+    let good = "version = 1\ntitle = \"x\"\nduration_s = 0.1\n[motion]\nkind = \"constant\"\nvelocity_rad_s = 1.0\n";
+    for (from, to, parts) in [
+        (
+            "\"constant\"",
+            "\u{201c}constant\u{201d}",
+            [
+                "line 5",
+                "column 8 has U+201C (left double quotation mark), write \"",
+            ],
+        ),
+        (
+            "= 1.0",
+            "= \u{2212}1.0",
+            ["line 6", "column 18 has U+2212 (minus sign), write -"],
+        ),
+        (
+            "= 0.1",
+            "=\u{a0}0.1",
+            [
+                "line 3",
+                "column 13 has U+00A0 (no-break space), write a plain space",
+            ],
+        ),
+        (
+            "\"x\"",
+            "\"C:\\Users\\x\"",
+            ["line 2", "write a path with single quotes"],
+        ),
+        ("= 1.0", "= 1.0.0", ["line 6", "not valid TOML"]),
+    ] {
+        let text = good.replace(from, to);
+        let scene = Scene::parse(Path::new("x.toml"), &text, &Overrides::default());
+        let error = scene.map(|_| ()).unwrap_err().to_string();
+        for part in parts {
+            assert!(error.contains(part), "{error}: {part}");
+        }
+    }
+}
+
 /// The summary of the run could not name it.
 #[cfg(target_os = "linux")]
 #[test]

@@ -452,6 +452,11 @@ fn steps_too_long_to_see_are_warned_of() {
             .iter()
             .any(|w| w.contains("step longer than a stick phase"))
     );
+    // That rung locates every event, however many fall into a step.
+    let located = "kind = \"exact-events\"\nstep_s = 1e-3";
+    let (_, summary) = simulate(&scene(1.0, fast, located, &crepitus("frozen")));
+    let all = summary.warnings.join("\n");
+    assert!(!all.contains("stick phase"), "{all}");
     let (_, summary) = simulate(&scene(1.0, fast, EXACT_EVENTS, &crepitus("frozen")));
     assert!(summary.warnings.is_empty(), "{:?}", summary.warnings);
 }

@@ -63,8 +63,8 @@ fn every_error_names_line_key_and_what_is_allowed() {
             ["line 3", "`duration_s`", "above 0"],
         ),
         (
-            refused("title = \"A scene\"\n", ""),
-            ["x.toml", "`title`", "missing"],
+            refused("title = \"A scene\"", "title = 3"),
+            ["x.toml", "`title`", "a text in quotes"],
         ),
         (
             refused("kind = \"constant\"", "kind = \"constnat\""),

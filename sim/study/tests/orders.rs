@@ -5,7 +5,7 @@
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Settings};
 use crepitus_plant::Motion;
-use crepitus_plant::recording::{AngleUnit, Source, read, smooth};
+use crepitus_plant::recording::{AngleUnit, Angles, Quantity, Source, read, smooth};
 use crepitus_study::accuracy::StudyScene;
 use crepitus_study::accuracy::convergence::{motions, orders_on, run_at};
 use crepitus_study::accuracy::orders::{Order, Orders};
@@ -186,13 +186,9 @@ fn recorded_knees_have_the_same_orders() {
         "opensim_walk_100hz",
         "bmc_walk_150hz",
     ] {
-        let source = Source {
-            path: &folder.join(name).with_extension("csv"),
-            time_column: "time_s",
-            angle_column: "knee_flexion_deg",
-            unit: Some(AngleUnit::Deg),
-        };
-        let samples = read(&source).unwrap();
+        let path = folder.join(name).with_extension("csv");
+        let angles = Quantity::Angles(Angles::of(Some(AngleUnit::Deg)));
+        let samples = read(&Source::new(&path, "time_s", "knee_flexion_deg", angles)).unwrap();
         let motion = Motion::recording(&smooth(&samples, 6.0).unwrap());
         for convention in Convention::ALL {
             let settings = Settings {

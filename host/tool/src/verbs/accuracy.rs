@@ -17,6 +17,7 @@ use crate::pictures::Pictures;
 use crate::results::{self, REPORT};
 use crate::studying::{self, Watch};
 use clap::Args;
+use crepitus_files::json_path;
 use crepitus_study::accuracy::actuator::actuator_table;
 use crepitus_study::accuracy::symptoms::SymptomPlan;
 use crepitus_study::accuracy::{self, Need, Study, convergence, study};
@@ -164,7 +165,9 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     match &need {
         Some(need) => answer::print_answer(need, &studied, &study, out.as_deref(), as_json),
-        None if as_json => print_json(&json!({ "out": out, "summary": summary })),
+        None if as_json => {
+            print_json(&json!({ "out": out.as_deref().map(json_path), "summary": summary }))
+        }
         None => {
             let report = out.unwrap_or_default().join("report.html");
             let target = study.target.as_ref().map(target::table);

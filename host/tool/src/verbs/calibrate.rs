@@ -23,6 +23,7 @@ use crate::line::{Line, failure, open, open_in_real_time};
 use crate::results::folder;
 use clap::{Args, ValueHint};
 use crepitus_client::Client;
+use crepitus_files::json_path;
 use finding::{Finding, Verdict};
 use person::{Answer, Person};
 use serde_json::json;
@@ -159,7 +160,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         results::write(out, folder, &findings, &changes, &summary)?;
     }
     if as_json {
-        print_json(&json!({ "calibration": summary, "out": out }))?;
+        print_json(&json!({ "calibration": summary, "out": out.map(json_path) }))?;
     } else {
         print(&results::text(&findings, &changes))?;
         if let Some(revision) = revision {

@@ -17,6 +17,7 @@ use crate::wav::Wav;
 use clap::Args;
 use crepitus_client::{Begin, Client, RequestKind};
 use crepitus_connection::Simulated;
+use crepitus_files::json_path;
 use crepitus_files::output::Inputs;
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
@@ -230,7 +231,7 @@ fn done(
     let wall_s = wall.as_secs_f64();
     if as_json {
         return print_json(&json!({
-            "out": out,
+            "out": json_path(out),
             "device_s": device_s,
             "wall_s": wall_s,
             "summary": reported.summary,

@@ -14,6 +14,7 @@ use crate::pictures::Pictures;
 use crate::results::{self, REPORT};
 use crate::studying::Watch;
 use clap::Args;
+use crepitus_files::json_path;
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, Scene, SceneError};
 use crepitus_study::effects::{
@@ -94,7 +95,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         page::files(&study, &summary, &arguments.pictures)?,
     )?;
     if as_json {
-        return print_json(&json!({ "out": out, "summary": summary }));
+        return print_json(&json!({ "out": json_path(&out), "summary": summary }));
     }
     for warning in study.warnings.iter().chain(&summary::unsteady(&study)) {
         warn(warning);

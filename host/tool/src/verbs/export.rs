@@ -6,6 +6,7 @@ use crate::interrupt;
 use crate::output::to_stderr;
 use crate::recorded::{beside, written};
 use clap::{Args, ValueEnum};
+use crepitus_files::json_path;
 use crepitus_files::output::{Inputs, NewFile};
 use crepitus_recording::{COLUMNS, Damage, Recording, Write, mcap_writer, parquet_writer};
 use serde_json::json;
@@ -111,7 +112,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let totals = recording.books().totals;
     if as_json {
         return print_json(
-            &json!({ "out": out, "rows": rows, "telemetry": totals, "warnings": warnings }),
+            &json!({ "out": json_path(&out), "rows": rows, "telemetry": totals, "warnings": warnings }),
         );
     }
     let what = match format {

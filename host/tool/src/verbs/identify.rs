@@ -12,6 +12,7 @@ use crate::output::to_stderr;
 use crate::progress::Progress;
 use crate::results::folder;
 use clap::{Args, ValueHint};
+use crepitus_files::json_path;
 use crepitus_files::output::NewFile;
 use crepitus_identify::DEVIATIONS;
 use crepitus_identify::brace::{Refusal, Weight, identify};
@@ -138,7 +139,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     if as_json {
         return print_json(
-            &json!({ "identified": summary, "out": out, "scene": arguments.scene_out }),
+            &json!({ "identified": summary, "out": out.map(json_path), "scene": arguments.scene_out.as_deref().map(json_path) }),
         );
     }
     brace.notes.iter().for_each(warn);

@@ -15,6 +15,7 @@ use crate::results::folder;
 use chirp::ChirpArguments;
 use clap::Args;
 use crepitus_client::Client;
+use crepitus_files::json_path;
 use crepitus_identify::actuator::identify;
 use crepitus_model::parameters::Source;
 use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
@@ -148,7 +149,9 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     };
     if as_json {
         let revision = revision.map(|revision| revision.0);
-        return print_json(&json!({ "identified": summary, "revision": revision, "out": out }));
+        return print_json(
+            &json!({ "identified": summary, "revision": revision, "out": out.map(json_path) }),
+        );
     }
     for note in notes {
         warn(note);

@@ -9,6 +9,7 @@ use crate::recorded::{Recorded, Shortfall, UNDER_WAY_TICKS, print_ended, report_
 use clap::Args;
 use crepitus_client::{Client, Unheard};
 use crepitus_connection::device_text;
+use crepitus_files::json_path;
 use crepitus_files::output::{Inputs, NewFile, OutputError, is_stdout};
 use crepitus_protocol::State;
 use crepitus_recording::{EndCause, Ending, Totals, seconds};
@@ -60,7 +61,10 @@ fn kept(failure: Failure, file: &Path, totals: &Totals) -> Failure {
         totals.received,
         report_command(file)
     );
-    let fields = [("file", json!(file)), ("telemetry", json!(totals))];
+    let fields = [
+        ("file", json!(json_path(file))),
+        ("telemetry", json!(totals)),
+    ];
     let fields = fields.map(|(name, value)| (name.to_owned(), value));
     Failure::Kept(text, fields.into_iter().collect())
 }
@@ -166,7 +170,9 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     match totals {
         None if as_json => print_json(&json!({ "file": null })),
         None => print("no sample came: nothing was recorded\n"),
-        Some(totals) if as_json => print_json(&json!({ "file": file, "telemetry": totals })),
+        Some(totals) if as_json => {
+            print_json(&json!({ "file": json_path(file), "telemetry": totals }))
+        }
         Some(totals) => print_ended(file, &totals),
     }
 }

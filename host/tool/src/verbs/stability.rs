@@ -15,6 +15,7 @@ use crate::pictures::Pictures;
 use crate::results::{self, REPORT};
 use crate::studying::{self, Watch};
 use clap::Args;
+use crepitus_files::json_path;
 use crepitus_study::stability::story::{self, Stories};
 use crepitus_study::stability::{Matrix, matrix};
 use serde_json::json;
@@ -107,7 +108,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         page::files(&matrix, stories.as_ref(), &summary, &arguments.pictures)?,
     )?;
     if as_json {
-        print_json(&json!({ "out": out, "summary": summary }))?;
+        print_json(&json!({ "out": json_path(&out), "summary": summary }))?;
         // Its cells are in the summary.
         return if matrix.broken().next().is_some() {
             Err(Failure::Negative)

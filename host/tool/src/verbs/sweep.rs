@@ -10,6 +10,7 @@ use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
 use crate::results;
 use clap::Args;
+use crepitus_files::json_path;
 use crepitus_scene::Overrides;
 use crepitus_scene::shipped::Source;
 use crepitus_sweep::{
@@ -341,7 +342,7 @@ fn store_failure(error: StoreError) -> Failure {
 fn done(plan: &Plan, table: &Written, ran: Option<&Ran>, as_json: bool) -> Result<(), Failure> {
     if as_json {
         return print_json(&json!({
-            "table": table.file,
+            "table": json_path(&table.file),
             "bytes": table.bytes,
             "runs": plan.runs(),
             "failed": table.failed,
@@ -392,7 +393,7 @@ fn shard_done(
     let of_shard = shard.points(runs);
     if as_json {
         return print_json(&json!({
-            "out": out,
+            "out": json_path(out),
             "points": [of_shard.start, of_shard.end],
             "ran": ran.runs,
             "missing": missing,

@@ -9,6 +9,7 @@ use crate::pictures::Pictures;
 use crate::results::{self, REPORT, footer, report_files};
 use crate::studying::Watch;
 use clap::{Args, value_parser};
+use crepitus_files::json_path;
 use crepitus_scene::scene::MotionKind;
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, Scene};
@@ -90,7 +91,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .files(|paper| page::pictures(&study, paper))?;
     results::write(folder, &out, report_files(html, &study, pictures)?)?;
     if as_json {
-        return print_json(&json!({ "out": out, "study": study }));
+        return print_json(&json!({ "out": json_path(&out), "study": study }));
     }
     print(&format!(
         "{}report: {}\n",

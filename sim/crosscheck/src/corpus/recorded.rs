@@ -51,7 +51,7 @@ pub(super) fn draw(rng: &mut Rng, scale: Scale) -> Option<(Motion, f64)> {
     let samples = Samples {
         time_s,
         angle_rad,
-        warnings: Vec::new(),
+        ..Samples::default()
     };
     let cutoff_hz = samples.nyquist_hz() * log_uniform(rng, 0.03, 0.95);
     let segments = smooth(&samples, cutoff_hz).ok()?;

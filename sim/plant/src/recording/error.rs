@@ -2,6 +2,7 @@
 
 use super::{AngleUnit, MAX_BYTES, MAX_JOIN_DEG, MAX_ROWS, MIN_SAMPLES, Source};
 use crepitus_files::input::Kind;
+use crepitus_files::table::{CellError, Problem};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -77,19 +78,14 @@ pub enum RecordingError {
     NotAFile { place: Place, kind: Kind },
     #[error("{place}: has {bytes} bytes, at most {MAX_BYTES} are read; cut or thin the recording")]
     TooLarge { place: Place, bytes: u64 },
+    #[error("{place}: {problem}")]
+    Table {
+        place: Place,
+        #[source]
+        problem: Box<Problem>,
+    },
     #[error("{place}: has more than {MAX_ROWS} rows; cut or thin the recording")]
     TooManyRows { place: Place },
-    #[error("{place}: is not UTF-8 text; export the recording as plain text (UTF-8)")]
-    NotText { place: Place },
-    #[error("{place}: is empty; a recording is a line of column names and then rows of numbers")]
-    Empty { place: Place },
-    #[error(
-        "{place}: no line \"endheader\", which ends the header of an OpenSim file; \
-             a CSV file must not be named .mot or .sto"
-    )]
-    NoEndHeader { place: Place },
-    #[error("{place}: nothing follows \"endheader\"; a line of column names and rows are missing")]
-    NoLabels { place: Place },
     #[error("{place}: has column names but no rows; export the recording again")]
     NoRows { place: Place },
     #[error("{place}: the rows end after {found}, at least {MIN_SAMPLES} are needed")]
@@ -107,47 +103,39 @@ pub enum RecordingError {
         role: &'static str,
         available: Vec<String>,
     },
-    #[error(
-        "{place}: the cells are separated by {separator:?}; write commas between cells \
-             and points as decimal signs"
-    )]
-    NotCommaSeparated { place: Place, separator: char },
     /// The positions count from 1.
-    #[error("{place}: the name is used twice, for columns {first} and {second}; rename one")]
+    #[error(
+        "{place}: the name is used twice, for columns {first} and {second}; rename one, \
+             or name it by its position, \"#{first}\" or \"#{second}\""
+    )]
     RepeatedColumn {
         place: Place,
         first: usize,
         second: usize,
     },
+    #[error("{place}: {error}{}", if matches!(error, CellError::NotANumber { .. }) { "" }
+            else { "; fill the gap, cut the recording before it, or write max_gap_s for short gaps" })]
+    Cell { place: Place, error: CellError },
+    #[error("{place}: \"{text}\" is not a time of day such as 09:15:03.25; check time_unit")]
+    NotAClock { place: Place, text: String },
     #[error(
-        "{place}: the file ends inside this row, with {found} of {expected} cells; \
-             delete the line or copy the file again"
+        "{place}: no numbers for {gap_s:.3} s, at most max_gap_s = {max_gap_s} s is bridged; fill \
+             the gap, cut the recording there, or write a larger max_gap_s"
     )]
-    CutRow {
+    LongGap {
         place: Place,
-        found: usize,
-        expected: usize,
+        gap_s: f64,
+        max_gap_s: f64,
     },
     #[error(
-        "{place}: the row has {found} cells, the names are {expected}; give every row one \
-             cell for each name (a comma always separates, decimal signs are points)"
+        "{place}: the file does not say the unit of the angles; write unit = \"deg\" or unit = \"rad\""
     )]
-    RowWidth {
-        place: Place,
-        found: usize,
-        expected: usize,
-    },
-    #[error("{place}: the cell is empty; fill the gap or cut the recording before it")]
-    EmptyCell { place: Place },
-    #[error("{place}: \"{text}\" is not a number{}",
-            if text.contains(',') { " (use a point as the decimal sign)" }
-            else { "; write a number such as 12.4" })]
-    NotANumber { place: Place, text: String },
+    NoUnit { place: Place },
     #[error(
-        "{place}: \"{text}\" is not a finite number; fill the gap or cut the recording \
-             before it"
+        "{place}: the title of the table is \"{title}\": these are no angles; name the file of \
+             coordinates (if they are angles, change that line)"
     )]
-    NotFinite { place: Place, text: String },
+    NotAngles { place: Place, title: String },
     /// The times are those in the file.
     #[error(
         "{place}: time goes back from {before_s} s to {after_s} s; sort the rows, or keep \
@@ -165,31 +153,24 @@ pub enum RecordingError {
     TimeStill { place: Place, time_s: f64 },
     #[error(
         "{place}: {value} is no time in seconds, at most ±{limit} is believed; check the \
-             column and its unit"
+             column and time_unit"
     )]
     TimeOutOfRange {
         place: Place,
         value: f64,
         limit: f64,
     },
-    #[error("{place}: {value} {unit} is no joint angle, at most ±{} {unit} is believed; check \
-             the column{}", unit.limit(),
-            if *unit == AngleUnit::Rad { ", and write unit = \"deg\" if it is in degrees" }
-            else { "" })]
+    #[error("{place}: {value} {unit} is no joint angle, at most ±{} {unit} is believed; {}",
+            unit.limit(),
+            if *is_mark { "it looks like a mark of a missing sample: fill the gap, or leave the cell empty and write \
+                max_gap_s" }
+            else if *unit == AngleUnit::Rad { "check the column, and write unit = \"deg\" if it is in degrees" }
+            else { "check the column" })]
     AngleOutOfRange {
         place: Place,
         value: f64,
         unit: AngleUnit,
-    },
-    /// `header` is the header's own words, `unit` what they mean.
-    #[error(
-        "{place}: the header says {header}, so the angles are in {unit}; \
-             write unit = \"{unit}\""
-    )]
-    UnitContradiction {
-        place: Place,
-        header: String,
-        unit: AngleUnit,
+        is_mark: bool,
     },
     #[error(
         "a cutoff of {cutoff_hz} Hz is not possible: it must be above 0 and below \
@@ -244,7 +225,7 @@ fn suggestion(place: &Place, available: &[String]) -> String {
 }
 
 fn list(names: &[String]) -> String {
-    const SHOWN: usize = 40;
+    const SHOWN: usize = 10;
     let shown: Vec<String> = names
         .iter()
         .take(SHOWN)

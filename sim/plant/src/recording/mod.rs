@@ -1,30 +1,32 @@
 //! A recorded knee motion, read from a file and made a C² function of time.
 //!
 //! ```text
-//! .csv ──────────┐
-//!                ├─ read ─> Samples ─ smooth ─> one cubic per interval: φ, Ω, Ω̇ continuous
-//! .mot, .sto ────┘          s, rad
+//! a table ─ read ─> Samples ─ smooth ─> one cubic per interval: φ, Ω, Ω̇ continuous
+//!                   s, rad
 //! ```
-//! [`read`] takes two columns of a table and validates them: an impossible motion is an error that
-//! names the file, line and column; an unusual one is a [`Warning`]. [`smooth`] is a zero-phase
+//! [`read`] takes two columns of a table, CSV or OpenSim's, which is recognised by its content, and
+//! validates them: an impossible motion is an error that names the file, line and column; an unusual
+//! one is a [`Warning`]. Every angle that is read passes one plausibility check. [`smooth`] is a zero-phase
 //! low-pass and an interpolation in one. Both are needed: a recording carries noise that
 //! differentiating amplifies, and a jump of Ω̇ is a jump of torque under the `physical` convention.
 //! [`smooth_cycle`] makes a motion without end of one recorded cycle.
 
-mod csv_file;
 mod cyclic_bands;
 mod error;
-mod opensim_file;
+mod plausible;
 mod repeat;
+mod rows;
 mod smooth;
 mod smoothing_spline;
-mod table;
+mod unit;
 mod warning;
 
 #[cfg(test)]
 mod test_cells;
 #[cfg(test)]
 mod test_data;
+#[cfg(test)]
+mod test_plausible;
 #[cfg(test)]
 mod test_read;
 #[cfg(test)]
@@ -33,13 +35,15 @@ mod test_repeat;
 mod test_smooth;
 
 pub use error::{Place, RecordingError};
+pub use plausible::{JOINT_DEG, JOINT_DEG_S};
 pub use repeat::{MAX_JOIN_DEG, smooth_cycle};
 pub use smooth::{CubicSegment, acceleration_ripple_rad_s2, smooth};
+pub use unit::{AngleUnit, TimeUnit};
 pub use warning::Warning;
 
 use crepitus_files::input::{self, InputError};
-use std::fmt;
 use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 /// The fewest samples that make a motion: a cubic has four coefficients.
@@ -51,64 +55,94 @@ pub const MAX_ROWS: usize = 20_000_000;
 /// The largest file that is read, in bytes.
 pub const MAX_BYTES: u64 = 2 << 30;
 
-/// Location of the motion in the file.
+/// Location of the motion in the file, and how it is meant.
 #[derive(Debug, Clone, Copy)]
 pub struct Source<'a> {
-    /// The file; `.mot` and `.sto` are read as OpenSim tables, everything else as CSV.
+    /// The file.
     pub path: &'a Path,
-    /// The name of the column with the time in seconds.
+    /// The name of the column with the times, or its position as `#1`.
     pub time_column: &'a str,
-    /// The name of the column with the joint angle.
+    /// The name of the column with the joint angle, or its position as `#2`.
     pub angle_column: &'a str,
-    /// The unit of the angle column; `None` for a column of something else, whose numbers are
-    /// taken as they are.
+    /// Quantity of that column.
+    pub quantity: Quantity,
+    /// The unit of the times; that of the file's row of units if left out, else seconds.
+    pub time_unit: Option<TimeUnit>,
+    /// The longest time without a number that is bridged, in s; 0 for none.
+    pub max_gap_s: f64,
+}
+
+impl<'a> Source<'a> {
+    /// A column of a quantity over times in seconds, without gaps.
+    pub const fn new(
+        path: &'a Path,
+        time_column: &'a str,
+        angle_column: &'a str,
+        quantity: Quantity,
+    ) -> Self {
+        Self {
+            path,
+            time_column,
+            angle_column,
+            quantity,
+            time_unit: None,
+            max_gap_s: 0.0,
+        }
+    }
+}
+
+/// Quantity of a column.
+#[derive(Debug, Clone, Copy)]
+pub enum Quantity {
+    /// Numbers of any unit, taken as they are.
+    Number,
+    /// Angles of a joint.
+    Angles(Angles),
+}
+
+/// Angles of a joint in a file, and what becomes of them: factor · (angle in the file) +
+/// `offset_deg`. The plausibility check is of the result; the samples are those of the file.
+#[derive(Debug, Clone, Copy)]
+pub struct Angles {
+    /// The unit; that of the file if left out.
     pub unit: Option<AngleUnit>,
+    /// Takes the unit of the file's header before `unit`, unless the numbers speak against it.
+    pub yields_to_header: bool,
+    /// Factor.
+    pub factor: f64,
+    /// Offset, in deg.
+    pub offset_deg: f64,
 }
 
-/// The unit of a column of angles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AngleUnit {
-    /// Degrees.
-    Deg,
-    /// Radians.
-    Rad,
-}
-
-impl AngleUnit {
-    /// The largest plausible angle, in this unit: 2000°, far beyond any joint.
-    pub const fn limit(self) -> f64 {
-        match self {
-            Self::Deg => 2000.0,
-            Self::Rad => 35.0,
+impl Angles {
+    /// Angles as they are in the file.
+    pub const fn of(unit: Option<AngleUnit>) -> Self {
+        Self {
+            unit,
+            yields_to_header: false,
+            factor: 1.0,
+            offset_deg: 0.0,
         }
-    }
-
-    fn to_rad(self, angle: f64) -> f64 {
-        match self {
-            Self::Deg => angle.to_radians(),
-            Self::Rad => angle,
-        }
-    }
-}
-
-impl fmt::Display for AngleUnit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Deg => "deg",
-            Self::Rad => "rad",
-        })
     }
 }
 
 /// The samples as read: at least [`MIN_SAMPLES`], times strictly increasing, everything finite.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Samples {
     /// The times since the first row, in s; the first is 0.
     pub time_s: Vec<f64>,
-    /// The angle at each time, in rad.
+    /// The angle at each time, in rad; of another quantity the numbers as they are.
     pub angle_rad: Vec<f64>,
+    /// The time of the first row as the file counts it, in s.
+    pub first_s: f64,
     /// Warnings about the recording.
     pub warnings: Vec<Warning>,
+    /// The unit that the angles have in the file.
+    pub unit: Option<AngleUnit>,
+    /// The unit that the header of an OpenSim file names.
+    pub header_unit: Option<AngleUnit>,
+    /// Assumptions about the form of the file, a sentence each.
+    pub read_as: Vec<String>,
 }
 
 impl Samples {
@@ -142,35 +176,6 @@ impl Samples {
     }
 }
 
-/// A column of something else than angles.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Values {
-    /// The times since the first row, in s; the first is 0.
-    pub time_s: Vec<f64>,
-    /// The value at each time, as it is in the file.
-    pub value: Vec<f64>,
-    /// Warnings about the file.
-    pub warnings: Vec<Warning>,
-}
-
-/// Reads a column of any unit, with its times.
-///
-/// # Errors
-/// As [`read`], without what is said of angles.
-pub fn read_values(path: &Path, time_column: &str, column: &str) -> Result<Values, RecordingError> {
-    let samples = read(&Source {
-        path,
-        time_column,
-        angle_column: column,
-        unit: None,
-    })?;
-    Ok(Values {
-        time_s: samples.time_s,
-        value: samples.angle_rad,
-        warnings: samples.warnings,
-    })
-}
-
 /// Reads the two columns of `source`.
 ///
 /// # Errors
@@ -181,12 +186,15 @@ pub fn read(source: &Source<'_>) -> Result<Samples, RecordingError> {
             place: Place::column_of(source, source.angle_column),
         });
     }
-    let file = open(source.path)?;
-    if is_opensim(source.path) {
-        opensim_file::read(source, file)
-    } else {
-        csv_file::read(source, file)
-    }
+    read_from(source, open(source.path)?)
+}
+
+/// Reads the two columns of `source` from the bytes of its file.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_from(source: &Source<'_>, bytes: impl Read) -> Result<Samples, RecordingError> {
+    rows::read(source, bytes)
 }
 
 fn open(path: &Path) -> Result<File, RecordingError> {
@@ -209,10 +217,4 @@ fn open(path: &Path) -> Result<File, RecordingError> {
         });
     }
     Ok(file)
-}
-
-fn is_opensim(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| {
-        extension.eq_ignore_ascii_case("mot") || extension.eq_ignore_ascii_case("sto")
-    })
 }

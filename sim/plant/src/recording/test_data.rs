@@ -1,7 +1,9 @@
 //! Real recordings, where the folder of them is present: gait, squats, running.
 
 use super::test_smooth::jumps;
-use super::{AngleUnit, Samples, Source, Warning, acceleration_ripple_rad_s2, read, smooth};
+use super::{
+    AngleUnit, Angles, Quantity, Samples, Source, Warning, acceleration_ripple_rad_s2, read, smooth,
+};
 use std::path::{Path, PathBuf};
 
 const CUTOFF_HZ: f64 = 6.0;
@@ -32,13 +34,8 @@ fn folder() -> Option<PathBuf> {
 fn read_csv(folder: &Path, name: &str) -> Samples {
     let path = folder.join(format!("{name}.csv"));
     let angle_column = "knee_flexion_deg";
-    read(&Source {
-        path: &path,
-        time_column: "time_s",
-        angle_column,
-        unit: Some(AngleUnit::Deg),
-    })
-    .unwrap()
+    let angles = Quantity::Angles(Angles::of(Some(AngleUnit::Deg)));
+    read(&Source::new(&path, "time_s", angle_column, angles)).unwrap()
 }
 
 #[test]
@@ -85,12 +82,11 @@ fn opensim_files_agree_with_their_csv() {
         ("opensim_crouch_gait", "opensim_crouch_gait_118hz", -1.0),
     ] {
         let path = folder.join("raw").join(format!("{raw}.mot"));
-        let source = Source {
-            path: &path,
-            time_column: "time",
-            angle_column: "knee_angle_r",
-            unit: Some(AngleUnit::Deg),
+        let angles = Angles {
+            factor: sign,
+            ..Angles::of(Some(AngleUnit::Deg))
         };
+        let source = Source::new(&path, "time", "knee_angle_r", Quantity::Angles(angles));
         let samples = read(&source).unwrap();
         let expected = read_csv(&folder, csv);
         assert_eq!(samples.time_s.len(), expected.time_s.len(), "{raw}");

@@ -1,25 +1,23 @@
 //! The forms of files that are read, and what is wrong or odd about whole files: text written to a
 //! temporary file.
 
-use super::{AngleUnit, MAX_BYTES, RecordingError, Samples, Source, Warning, read};
+use super::{
+    AngleUnit, Angles, MAX_BYTES, Quantity, RecordingError, Samples, Source, TimeUnit, Warning,
+    read, read_from,
+};
 use std::fs;
 
 /// Reads `text` as a file of that name; the error is shown without the folder.
 pub(super) fn read_unit(
     name: &str,
     text: impl AsRef<[u8]>,
-    unit: AngleUnit,
+    unit: impl Into<Option<AngleUnit>>,
 ) -> Result<Samples, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     fs::write(&path, text).unwrap();
-    read(&Source {
-        path: &path,
-        time_column: "time",
-        angle_column: "knee",
-        unit: Some(unit),
-    })
-    .map_err(|error| {
+    let angles = Quantity::Angles(Angles::of(unit.into()));
+    read(&Source::new(&path, "time", "knee", angles)).map_err(|error| {
         error
             .to_string()
             .replace(&format!("{}/", folder.path().display()), "")
@@ -57,9 +55,9 @@ pub(super) fn assert_warned(result: Result<Samples, String>, expected: &str) {
     );
 }
 
-pub(super) const CSV: &str = "time,knee\n1.0,0\n1.1,90\n1.2,180\n1.3,-90\n";
+pub(super) const CSV: &str = "time,knee\n1.0,0\n1.1,60\n1.2,120\n1.3,-30\n";
 pub(super) const MOT: &str = "Coordinates\nversion=1\nnRows=4\nnColumns=3\ninDegrees=yes\n\nUnits are S.I. units\n\
-                   endheader\ntime\thip\tknee\n 1.0\t 5\t 0\n 1.1\t5\t90\n 1.2\t5\t180\n 1.3\t5\t-90\n";
+                   endheader\ntime\thip\tknee\n 1.0\t 5\t 0\n 1.1\t5\t60\n 1.2\t5\t120\n 1.3\t5\t-30\n";
 
 #[track_caller]
 fn assert_good(result: Result<Samples, String>) {
@@ -69,9 +67,9 @@ fn assert_good(result: Result<Samples, String>) {
             && found
                 .iter()
                 .zip(expected)
-                .all(|(a, b)| (a - b).abs() < 1e-12)
+                .all(|(a, b)| (a - b).abs() < 1e-10)
     };
-    let quarter = std::f64::consts::FRAC_PI_2;
+    let third = std::f64::consts::FRAC_PI_3;
     assert!(
         near(&samples.time_s, [0.0, 0.1, 0.2, 0.3]),
         "{:?}",
@@ -79,7 +77,7 @@ fn assert_good(result: Result<Samples, String>) {
     );
     assert!(near(
         &samples.angle_rad,
-        [0.0, quarter, 2.0 * quarter, -quarter]
+        [0.0, third, 2.0 * third, -0.5 * third]
     ));
     assert_eq!(samples.time_s[0], 0.0);
     assert_eq!(samples.warnings, []);
@@ -94,10 +92,10 @@ fn csv_is_read_in_the_forms_programs_write() {
     assert_good(read_csv(format!("\u{feff}{CSV}")));
     assert_good(read_csv(format!("\n{}\n \r\n", CSV.replace('\n', "\n\n"))));
     assert_good(read_csv(
-        CSV.replace("time,", "\"time\",").replace("180", "\"180\""),
+        CSV.replace("time,", "\"time\",").replace("120", "\"120\""),
     ));
     assert_good(read_csv(
-        "hip,knee,time\n9,0,1\n9,90,1.1\n9,180,1.2\nx,-90,1.3",
+        "hip,knee,time\n9,0,1\n9,60,1.1\n9,120,1.2\nx,-30,1.3",
     ));
 }
 
@@ -113,7 +111,7 @@ fn opensim_is_read_in_the_forms_programs_write() {
         &MOT.replace("nRows=", "datarows ")
             .replace("nColumns=", "datacolumns "),
     ));
-    assert_good(read_mot(&MOT.replace("1.1\t5\t90", "1.1  5  90")));
+    assert_good(read_mot(&MOT.replace("1.1\t5\t60", "1.1  5  60")));
     assert_good(read_unit("a.STO", MOT, AngleUnit::Deg));
 }
 
@@ -128,8 +126,9 @@ fn radians_are_taken_as_they_are() {
     assert_eq!(samples.angle_rad, [0.0, 0.5, 1.0, 1.5]);
     let text = MOT
         .replace("yes", "no")
-        .replace("180", "1")
-        .replace("90", "2");
+        .replace("120", "1")
+        .replace("60", "2")
+        .replace("-30", "-0.3");
     read_unit("a.mot", text, AngleUnit::Rad).unwrap();
 }
 
@@ -137,12 +136,7 @@ fn radians_are_taken_as_they_are() {
 fn files_that_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let missing = folder.path().join("missing.csv");
-    let mut source = Source {
-        path: &missing,
-        time_column: "t",
-        angle_column: "a",
-        unit: Some(AngleUnit::Deg),
-    };
+    let mut source = Source::new(&missing, "t", "a", Quantity::Number);
     let error = read(&source).unwrap_err();
     assert!(matches!(error, RecordingError::Unreadable { .. }));
     assert!(
@@ -187,20 +181,6 @@ fn files_without_a_table() {
         "a.csv, line 2: the rows end after 1, at least 4 are needed",
     );
     assert_refused(
-        read_csv(b"time,knee\n0,1\n0.1,\xff\n"),
-        "a.csv, line 3: is not UTF-8 text",
-    );
-    assert_refused(
-        read_csv(b"\xff\xfet\0i\0m\0e\0\n\0".as_slice()),
-        "a.csv, line 1: is not UTF-8 text",
-    );
-    let latin = [b"M\xfcller\n".as_slice(), MOT.as_bytes()].concat();
-    assert_refused(
-        read_unit("a.mot", latin, AngleUnit::Deg),
-        "a.mot, line 1: is not UTF-8 text",
-    );
-    assert_refused(read_mot(CSV), "a.mot: no line \"endheader\"");
-    assert_refused(
         read_mot("x\nendheader\n"),
         "a.mot, line 2: nothing follows \"endheader\"",
     );
@@ -231,26 +211,21 @@ fn columns_that_are_not_there_or_not_clear() {
     );
     assert_refused(
         read_csv("time,knee,hip,knee\n0,1,2,3\n"),
-        "a.csv, line 1, column \"knee\": the name is used twice, for columns 2 and 4",
+        "a.csv, line 1, column \"knee\": the name is used twice, for columns 2 and 4; rename one, or name it by its position, \
+         \"#2\" or \"#4\"",
     );
     assert_good(read_csv(
         CSV.replace("time,knee", "time,knee,x,x")
-            .replace(".1,90", ".1,90,0,0")
+            .replace(".1,60", ".1,60,0,0")
             .replace("1.0,0", "1.0,0,0,0")
-            .replace("180", "180,0,0")
-            .replace("-90", "-90,0,0"),
+            .replace("120", "120,0,0")
+            .replace("-30", "-30,0,0"),
     ));
-    assert_refused(
-        read_csv(CSV.replace(',', ";")),
-        "a.csv, line 1: the cells are separated by ';'",
-    );
+    let many: Vec<String> = (0..60).map(|i| format!("c{i}")).collect();
+    let error = read_csv(many.join(",")).unwrap_err();
+    assert!(error.ends_with("\"c9\" and 50 more"), "{error}");
     let path = std::path::Path::new("a.csv");
-    let source = Source {
-        path,
-        time_column: "knee",
-        angle_column: "knee",
-        unit: Some(AngleUnit::Deg),
-    };
+    let source = Source::new(path, "knee", "knee", Quantity::Number);
     assert_eq!(
         read(&source).unwrap_err().to_string(),
         "a.csv, column \"knee\": time_column and angle_column are the same; name two columns"
@@ -275,5 +250,132 @@ fn a_header_that_does_not_fit_and_gaps_are_warnings() {
         read_csv(format!("{CSV}2.0,5\n2.1,5\n3.5,6\n3.6,7")),
         "a.csv, column \"time\": no samples between 2.100 s and 3.500 s, where 0.100 s is usual \
          (2 such gaps, this is the longest)",
+    );
+}
+
+/// Checks a file, and what is said of how it was read.
+#[track_caller]
+fn assert_read_as(result: Result<Samples, String>, expected: &[&str]) {
+    let mut samples = result.unwrap();
+    let read_as = std::mem::take(&mut samples.read_as);
+    assert_eq!(read_as.len(), expected.len(), "{read_as:?}");
+    for (found, expected) in read_as.iter().zip(expected) {
+        assert!(found.contains(expected), "{found}: {expected}");
+    }
+    assert_good(Ok(samples));
+}
+
+#[test]
+fn files_of_laboratories_are_read_and_what_was_assumed_is_said() {
+    let german = CSV.replace(',', ";").replace('.', ",");
+    assert_read_as(read_csv(CSV.replace(',', ";")), &["semicolons"]);
+    assert_read_as(read_csv(&german), &["semicolons", "decimal commas"]);
+    assert_read_as(
+        read_csv(german.replace(';', "\t")),
+        &["tabs", "decimal commas"],
+    );
+    assert_read_as(read_csv(CSV.replace('\n', "\r")), &[]);
+    assert_read_as(read_csv(format!("a,b\n\n{CSV}")), &["line 3"]);
+    let with_units = CSV.replace("knee\n", "knee\ns,deg\n");
+    assert_read_as(
+        read_unit("a.csv", &with_units, None),
+        &["line 2", "angles are in deg"],
+    );
+    assert_read_as(
+        read_unit("a.mot.txt", MOT, None),
+        &["in deg, as the header (inDegrees=yes) says"],
+    );
+    assert_read_as(read_mot(CSV), &[]);
+    let wide: Vec<u8> = CSV.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    assert_read_as(read_csv(wide), &["UTF-16LE"]);
+    assert_read_as(
+        read_csv([b"Pr\xfcfer,\n", CSV.as_bytes()].concat()),
+        &["line 2", "windows-1252"],
+    );
+    // Units of time: named, or those of the row.
+    let ms = "time,knee\n1000,0\n1100,60\n1200,120\n1300,-30\n";
+    let row = ms.replace("knee\n", "knee\nmSec,Degrees\n");
+    assert_read_as(read_csv(&row), &["line 2", "times are in ms"]);
+    assert_read_as(read_timed(ms, TimeUnit::Milliseconds), &[]);
+    let clock =
+        "time,knee\n23:59:59.9,0\n00:00:00.0,60\n2026-01-02T00:00:00.1,120\n00:00:00.2Z,-30\n";
+    assert_read_as(read_timed(clock, TimeUnit::Clock), &[]);
+    assert_refused(
+        read_csv(clock),
+        "a.csv, line 2, column \"time\": \"23:59:59.9\" is not a number; if it is a time of day, write \
+         time_unit = \"clock\"",
+    );
+    assert_refused(
+        read_timed(CSV, TimeUnit::Clock),
+        "a.csv, line 2, column \"time\": \"1.0\" is not a time of day",
+    );
+}
+
+fn read_timed(text: &str, time_unit: TimeUnit) -> Result<Samples, String> {
+    let source = Source {
+        time_unit: Some(time_unit),
+        ..Source::new(
+            std::path::Path::new("a.csv"),
+            "time",
+            "knee",
+            Quantity::Angles(Angles::of(Some(AngleUnit::Deg))),
+        )
+    };
+    read_from(&source, text.as_bytes()).map_err(|error| error.to_string())
+}
+
+#[test]
+fn short_gaps_are_bridged_where_that_is_asked_for() {
+    let text = "time,knee\n0,1\n0.1,2\n0.2,\n0.3,NaN\n0.4,5\n0.5,6\n";
+    let read = |text: &str, max_gap_s| {
+        let source = Source {
+            max_gap_s,
+            ..Source::new(
+                std::path::Path::new("a.csv"),
+                "#1",
+                "knee",
+                Quantity::Angles(Angles::of(Some(AngleUnit::Deg))),
+            )
+        };
+        read_from(&source, text.as_bytes()).map_err(|error| error.to_string())
+    };
+    let samples = read(text, 0.35).unwrap();
+    assert_eq!(samples.time_s, [0.0, 0.1, 0.4, 0.5]);
+    assert_eq!(
+        samples.read_as,
+        ["samples missing and bridged (max_gap_s): 2"]
+    );
+    assert_refused(
+        read(text, 0.25),
+        "a.csv, line 4, column \"knee\": no numbers for 0.300 s, at most max_gap_s = 0.25 s",
+    );
+    for text in [text, "time,knee\n0,1\n1,2\n2,2\n3,3\n4,"] {
+        let error = read(text, 0.0).unwrap_err();
+        assert!(error.contains("the cell is empty; fill the gap"), "{error}");
+    }
+    // Nothing is known beyond an end.
+    for text in [
+        "time,knee\n0,\n1,2\n2,3\n3,4\n4,5",
+        "time,knee\n0,1\n1,2\n2,2\n3,3\n4,",
+    ] {
+        let error = read(text, 9.0).unwrap_err();
+        assert!(error.contains("the cell is empty"), "{error}");
+    }
+}
+
+#[test]
+fn a_row_that_repeats_the_one_before_is_left_out() {
+    let doubled = format!("{CSV}1.3,-30\n1.3,-30\n");
+    let samples = read_csv(&doubled).unwrap();
+    assert_eq!(samples.time_s.len(), 4);
+    assert_warned(
+        Ok(samples),
+        "a.csv, line 6: the row repeats the one before it, time and value; left out (2 such rows)",
+    );
+    let mot = format!("{}1.3\t5\t-30\n", MOT.replace("nRows=4", "nRows=5"));
+    assert_warned(read_mot(&mot), "a.mot, line 14: the row repeats");
+    assert_refused(
+        read_csv(format!("{CSV}1.3,-29\n")),
+        "a.csv, line 6, column \"time\": time stands still at 1.3 s",
     );
 }

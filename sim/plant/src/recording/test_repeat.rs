@@ -11,7 +11,7 @@ fn samples(time_s: Vec<f64>, angle_rad: Vec<f64>) -> Samples {
     Samples {
         time_s,
         angle_rad,
-        warnings: Vec::new(),
+        ..Samples::default()
     }
 }
 

@@ -8,7 +8,7 @@ fn samples(time_s: Vec<f64>, angle: impl Fn(f64) -> f64) -> Samples {
     Samples {
         time_s,
         angle_rad,
-        warnings: Vec::new(),
+        ..Samples::default()
     }
 }
 
@@ -157,7 +157,7 @@ fn angle_velocity_and_acceleration_are_continuous() {
         Samples {
             time_s,
             angle_rad,
-            warnings: Vec::new(),
+            ..Samples::default()
         }
     };
     for time_s in [
@@ -276,7 +276,7 @@ fn odd_spacing_does_not_break_the_solver() {
         let recording = Samples {
             time_s,
             angle_rad,
-            warnings: Vec::new(),
+            ..Samples::default()
         };
         match smooth(&recording, 0.2 * recording.nyquist_hz().min(50.0)) {
             Ok(segments) => {

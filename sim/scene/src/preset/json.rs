@@ -1,6 +1,7 @@
 //! A preset as JSON, for programs.
 
 use super::{Disorder, Evidence, Level, Preset, PresetValue, Setting};
+use crepitus_files::json_path;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
@@ -40,7 +41,7 @@ impl Preset {
             "feel": self.feel,
             "evidence": self.evidence.map(Evidence::name),
             "source": self.source,
-            "file": file,
+            "file": file.map(json_path),
             "effects": effects,
             "values": values,
         })

@@ -7,6 +7,7 @@ use super::{AddedTime, Totals};
 use crate::scene::{Crepitus, DataFile, SCENE_VERSION, Scene, SolverChoice};
 use crepitus_model::parameters::Tabled;
 use crepitus_model::render::effects::FELT_SHARE;
+use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, EVENTS_PER_STEP, Parameters};
 use crepitus_plant::effect::{Effect, Part};
 use serde::Serialize;
@@ -566,8 +567,15 @@ fn run_warnings(scene: &Scene, totals: &Totals) -> Vec<String> {
         ));
     }
     warnings.extend(lead_warning(scene, totals));
-    if let (Some(crepitus), SolverChoice::Ladder { step_s, .. }) = (&scene.crepitus, scene.solver) {
-        warnings.extend(step_warnings(crepitus, step_s, totals.fastest_rad_s));
+    if let (Some(crepitus), SolverChoice::Ladder { solver, step_s, .. }) =
+        (&scene.crepitus, scene.solver)
+    {
+        warnings.extend(step_warnings(
+            crepitus,
+            solver,
+            step_s,
+            totals.fastest_rad_s,
+        ));
     }
     warnings.extend(pitch_warnings(scene, totals.fastest_rad_s));
     warnings
@@ -675,13 +683,19 @@ fn pitch_warnings(scene: &Scene, fastest_rad_s: f64) -> Vec<String> {
 }
 
 /// Steps too long to see what happens within them.
-fn step_warnings(crepitus: &Crepitus, step_s: f64, fastest_rad_s: f64) -> Vec<String> {
+fn step_warnings(
+    crepitus: &Crepitus,
+    solver: Solver,
+    step_s: f64,
+    fastest_rad_s: f64,
+) -> Vec<String> {
     let p: &Parameters = &crepitus.settings.parameters;
     let mut warnings = Vec::new();
     // 2(Ts − Tk)/(kr·Ω): the shortest stick of the run.
     let stick_s =
         2.0 * (p.static_torque_nm - p.kinetic_torque_nm) / (p.stiffness_nm_per_rad * fastest_rad_s);
-    if stick_s < step_s {
+    // That rung locates every event inside the step.
+    if stick_s < step_s && solver != Solver::ExactEvents {
         warnings.push(format!(
             "step longer than a stick phase: at the highest speed, {fastest_rad_s:.3} rad/s, a stick lasts \
              {:.1} µs and a step {:.1} µs; a solver that does not locate events inside the step misses cycles",

@@ -14,6 +14,9 @@ pub struct DataFile {
     pub file: PathBuf,
     /// SHA-256 of its content, in hex digits.
     pub sha256: String,
+    /// Assumptions about its form, a sentence each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub read_as: Vec<String>,
 }
 
 impl DataFile {
@@ -34,6 +37,7 @@ impl DataFile {
         Ok(Self {
             file: path.canonicalize()?,
             sha256,
+            read_as: Vec::new(),
         })
     }
 }

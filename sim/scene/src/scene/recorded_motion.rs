@@ -11,7 +11,9 @@ use super::motion::ANY_DEG;
 use crate::document::{Range, Section, Value};
 use crate::error::SceneError;
 use crepitus_plant::Motion;
-use crepitus_plant::recording::{self, AngleUnit, Source};
+use crepitus_plant::recording::{
+    self, AngleUnit, Angles, Quantity, RecordingError, Source, TimeUnit,
+};
 
 /// Half-amplitude frequency of the low-pass over a recording, Hz: the 6 Hz
 /// that gait laboratories use (Winter).
@@ -19,6 +21,9 @@ const DEFAULT_CUTOFF_HZ: f64 = 6.0;
 
 /// Factors that a joint's angle could need.
 const SCALE: Range = Range::above(0.0, 100.0);
+
+/// Longest gap that could be bridged, s.
+const GAP_S: Range = Range::closed(0.0, 10.0);
 
 /// The motion of a recording, the largest change of its acceleration, and its
 /// file.
@@ -30,7 +35,10 @@ pub(super) fn recording(
     let file = section.text("file")?;
     let time_column = section.text("time_column")?;
     let angle_column = section.text("angle_column")?;
-    let unit = section.choice("unit", &[("deg", AngleUnit::Deg), ("rad", AngleUnit::Rad)])?;
+    let units = [("deg", AngleUnit::Deg), ("rad", AngleUnit::Rad)];
+    let unit = section.optional_choice("unit", &units)?;
+    let time_unit = section.optional_choice("time_unit", &TimeUnit::ALL)?;
+    let max_gap_s = section.optional_number("max_gap_s", GAP_S)?;
     let cutoff_hz = section.number_or("cutoff_hz", Range::above(0.0, 1e6), DEFAULT_CUTOFF_HZ)?;
     let sign = sign(section)?;
     let scale = section.number_or("scale", SCALE, 1.0)?;
@@ -38,13 +46,28 @@ pub(super) fn recording(
     let repeat = section.flag("repeat")?;
     let folder = section.file().parent().unwrap_or(section.file());
     let path = folder.join(file);
-    let samples = recording::read(&Source {
-        path: &path,
-        time_column,
-        angle_column,
-        unit: Some(unit),
-    })
-    .map_err(|e| section.key_error("file", e.to_string()))?;
+    let angles = Angles {
+        factor: sign * scale,
+        offset_deg,
+        ..Angles::of(unit)
+    };
+    let source = Source {
+        time_unit,
+        max_gap_s: max_gap_s.unwrap_or(0.0),
+        ..Source::new(&path, time_column, angle_column, Quantity::Angles(angles))
+    };
+    let samples = recording::read(&source).map_err(|e| {
+        let key = match e {
+            RecordingError::NoUnit { .. } => "unit",
+            RecordingError::NotAClock { .. } => "time_unit",
+            RecordingError::LongGap { .. } => "max_gap_s",
+            _ => "file",
+        };
+        section.key_error(key, e.to_string())
+    })?;
+    if let (None, Some(taken)) = (unit, samples.unit) {
+        section.note("unit", Value::Text(taken.to_string()));
+    }
     warnings.extend(samples.warnings.iter().map(ToString::to_string));
     // A duration written with fewer digits than the file's last time is meant.
     if !repeat && duration_s > samples.duration_s() * (1.0 + 1e-9) {
@@ -64,8 +87,7 @@ pub(super) fn recording(
     };
     let mut segments = smooth(&samples, cutoff_hz).map_err(|e| {
         let key = match e {
-            recording::RecordingError::NoCycle { .. }
-            | recording::RecordingError::ShortCycle { .. } => "repeat",
+            RecordingError::NoCycle { .. } | RecordingError::ShortCycle { .. } => "repeat",
             _ => "cutoff_hz",
         };
         section.key_error(key, e.to_string())
@@ -74,8 +96,9 @@ pub(super) fn recording(
         *segment = segment.scaled(sign * scale);
     }
     let ripple = recording::acceleration_ripple_rad_s2(&segments);
-    let data = DataFile::of(&path)
+    let mut data = DataFile::of(&path)
         .map_err(|e| section.key_error("file", format!("cannot be read: {e}")))?;
+    data.read_as.clone_from(&samples.read_as);
     // JSON has no other names.
     let Some(whole_path) = data.file.to_str() else {
         return Err(section.key_error(

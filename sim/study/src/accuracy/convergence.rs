@@ -110,7 +110,7 @@ fn knee_bends() -> Option<Motion> {
     let samples = Samples {
         angle_rad: time_s.iter().map(angle).collect(),
         time_s,
-        warnings: Vec::new(),
+        ..Samples::default()
     };
     smooth(&samples, CUTOFF_HZ)
         .ok()

@@ -189,7 +189,7 @@ impl Shaft {
                 let samples = Samples {
                     time_s: rows.iter().map(|row| row.0).collect(),
                     angle_rad: rows.iter().map(|row| sign * row.1).collect(),
-                    warnings: Vec::new(),
+                    ..Samples::default()
                 };
                 // The catalogue's rows can be smoothed; a test says so.
                 smooth(&samples, *cutoff_hz)

@@ -145,7 +145,7 @@ mod tests {
     use super::super::input::Lost;
     use super::*;
     use crepitus_plant::Motion;
-    use crepitus_plant::recording::{AngleUnit, Source, read, smooth};
+    use crepitus_plant::recording::{AngleUnit, Angles, Quantity, Source, read, smooth};
     use crepitus_scene::preset::joints;
     use crepitus_scene::scene::Precision;
     use std::path::Path;
@@ -159,12 +159,8 @@ mod tests {
         };
         let mut all = Vec::new();
         for file in files.flatten().map(|file| file.path()) {
-            let source = Source {
-                path: &file,
-                time_column: "time_s",
-                angle_column: "knee_flexion_deg",
-                unit: Some(AngleUnit::Deg),
-            };
+            let angles = Quantity::Angles(Angles::of(Some(AngleUnit::Deg)));
+            let source = Source::new(&file, "time_s", "knee_flexion_deg", angles);
             if let Ok(samples) = read(&source) {
                 let motion = Motion::recording(&smooth(&samples, 6.0).unwrap());
                 let name = file.file_name().unwrap_or_default();

@@ -1,6 +1,7 @@
-//! Points of another program from a CSV file with a key of the scene over each column.
+//! Points of another program from a table with a key of the scene over each column.
 
 use crepitus_files::input::{self, InputError};
+use crepitus_files::table::{Names, Table, TableError};
 use std::io;
 use std::path::Path;
 
@@ -17,14 +18,16 @@ pub enum PointsError {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]
     File(#[from] InputError),
-    /// The file cannot be read as CSV; the line is in the cause.
+    /// The file cannot be read as a table.
     #[error("{0}")]
-    Csv(#[from] csv::Error),
+    Table(#[from] TableError),
     /// A column without a name, or one name twice.
     #[error(
-        "line 1: column {column} has {what}: the first line has a key of the scene over each column"
+        "line {line}: column {column} has {what}: the first line has a key of the scene over each column"
     )]
     Header {
+        /// Line, from 1.
+        line: u64,
         /// Column, from 1.
         column: usize,
         /// Description of the mistake.
@@ -34,7 +37,7 @@ pub enum PointsError {
     #[error("line {line}: `{path}` is empty")]
     Empty {
         /// Line, from 1.
-        line: usize,
+        line: u64,
         /// The key.
         path: String,
     },
@@ -44,7 +47,8 @@ pub enum PointsError {
 }
 
 impl Points {
-    /// Reads a CSV file.
+    /// Reads a table: commas, semicolons or tabs between cells, and where no comma separates, decimal
+    /// commas.
     ///
     /// # Errors
     /// [`PointsError`].
@@ -52,20 +56,29 @@ impl Points {
         Self::from_csv(input::read(file, input::TABLE_BYTES)?.as_slice())
     }
 
-    /// Reads CSV.
+    /// Reads a table from its bytes.
     ///
     /// # Errors
     /// [`PointsError`].
     pub fn from_csv(text: impl io::Read) -> Result<Self, PointsError> {
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .from_reader(text);
-        let paths: Vec<_> = reader.headers()?.iter().map(str::to_owned).collect();
-        let rows: Vec<Vec<String>> = reader
-            .records()
-            .map(|record| Ok(record?.iter().map(str::to_owned).collect()))
-            .collect::<Result<_, csv::Error>>()?;
-        Self::new(paths, rows)
+        let mut table = Table::open(text, Names::FirstLine)?;
+        let paths = table.names().to_vec();
+        check(&paths, table.names_line())?;
+        let mut values = Vec::new();
+        while let Some(line) = table.advance()? {
+            let row: Vec<String> = (0..paths.len()).map(|place| table.value(place)).collect();
+            if let Some(place) = row.iter().position(String::is_empty) {
+                return Err(PointsError::Empty {
+                    line,
+                    path: paths.get(place).cloned().unwrap_or_default(),
+                });
+            }
+            values.push(row);
+        }
+        if values.is_empty() {
+            return Err(PointsError::NoRows);
+        }
+        Ok(Self { paths, values })
     }
 
     /// Creates a table from rows of values, with a key per column.
@@ -73,23 +86,11 @@ impl Points {
     /// # Errors
     /// [`PointsError`].
     pub fn new(paths: Vec<String>, values: Vec<Vec<String>>) -> Result<Self, PointsError> {
-        for (place, path) in paths.iter().enumerate() {
-            let what = if path.is_empty() {
-                "no name".to_owned()
-            } else if paths[..place].contains(path) {
-                format!("the name `{path}` for the second time")
-            } else {
-                continue;
-            };
-            return Err(PointsError::Header {
-                column: place + 1,
-                what,
-            });
-        }
+        check(&paths, 1)?;
         for (row, values) in values.iter().enumerate() {
             if let Some(place) = values.iter().position(String::is_empty) {
                 return Err(PointsError::Empty {
-                    line: row + 2,
+                    line: row as u64 + 2,
                     path: paths.get(place).cloned().unwrap_or_default(),
                 });
             }
@@ -114,6 +115,25 @@ impl Points {
     }
 }
 
+/// Refuses a column without a name, and one name twice.
+fn check(paths: &[String], line: u64) -> Result<(), PointsError> {
+    for (place, path) in paths.iter().enumerate() {
+        let what = if path.is_empty() {
+            "no name".to_owned()
+        } else if paths[..place].contains(path) {
+            format!("the name `{path}` for the second time")
+        } else {
+            continue;
+        };
+        return Err(PointsError::Header {
+            line,
+            column: place + 1,
+            what,
+        });
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -127,6 +147,18 @@ mod tests {
     }
 
     #[test]
+    fn semicolons_and_tabs_separate_and_numbers_may_have_decimal_commas() {
+        for text in ["a.b;c\r\n1,5;x\r\n2;45\r\n", "a.b\tc\n1,5\tx\n2\t45\n"] {
+            let points = Points::from_csv(text.as_bytes()).unwrap();
+            assert_eq!(points.paths(), ["a.b", "c"]);
+            assert_eq!(points.row(0), ["1.5", "x"]);
+            assert_eq!(points.row(1), ["2", "45"]);
+        }
+        let one = Points::from_csv("a.b\n1.5\n2\n".as_bytes()).unwrap();
+        assert_eq!((one.paths(), one.rows()), (vec!["a.b"], 2));
+    }
+
+    #[test]
     fn what_is_wrong_is_said_with_its_line() {
         for (text, word) in [
             (
@@ -135,7 +167,11 @@ mod tests {
             ),
             ("a,\n1,2\n", "column 2 has no name"),
             ("a,b\n1,2\n3,\n", "line 3: `b` is empty"),
-            ("a,b\n1,2\n3\n", "line: 3"),
+            ("a,b\n1,2\n3\n", "line 3: the file ends inside this row"),
+            ("a,b\n1,2\n3\n4,5\n", "line 3: the row has 1 cells"),
+            ("a,b\n1,\"x\n2,3\n", "line 2: a quote"),
+            ("\u{1f}\0", "binary"),
+            ("<html>", "web page"),
             ("a,b\n", "no row"),
         ] {
             let error = Points::from_csv(text.as_bytes()).unwrap_err().to_string();

@@ -5,6 +5,7 @@ mod on_target;
 use super::plan::Studied;
 use super::{target, words};
 use crate::failure::{Failure, print, print_json};
+use crepitus_files::json_path;
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::answer::{Answer, Candidate, Mark};
 use crepitus_study::accuracy::target::STEP_SHARE;
@@ -32,7 +33,7 @@ pub(super) fn print_answer(
     let answer = answer(&study.points, need, &question);
     if as_json {
         print_json(&json!({
-            "need": need, "question": question, "answer": answer, "out": out,
+            "need": need, "question": question, "answer": answer, "out": out.map(json_path),
             "chosen_by": if question.target.is_some() { "target cycles" } else { CLOCK },
         }))?;
     } else {

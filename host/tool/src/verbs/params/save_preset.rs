@@ -7,6 +7,7 @@ use crate::own_presets;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use crepitus_board::values::knee;
+use crepitus_files::json_path;
 use crepitus_scene::preset::{Disorder, Level};
 use serde_json::json;
 
@@ -77,7 +78,7 @@ pub(super) fn run(
         return print_json(&json!({
             "revision": revision.0,
             "name": arguments.name,
-            "file": file,
+            "file": json_path(&file),
             "effects": effects,
         }));
     }

@@ -39,6 +39,9 @@ pub(super) fn in_brief(s: &Summary) -> String {
         "  {} s simulated by {} in {:.2} s, {:.0} times real time with all outputs",
         s.simulated_s, s.solver, s.wall_s, s.real_time_factor
     ));
+    if let Some(data) = s.data.as_ref().filter(|data| !data.read_as.is_empty()) {
+        lines.push(format!("  recording: {}", data.read_as.join("; ")));
+    }
     lines.join("\n")
 }
 
@@ -128,6 +131,12 @@ fn run_section(s: &Summary) -> Section {
         ),
         ("solver", format!("{} ({})", s.solver, s.precision)),
     ];
+    let read_as = s.data.as_ref().map(|data| data.read_as.join("; "));
+    rows.extend(
+        read_as
+            .filter(|text| !text.is_empty())
+            .map(|text| ("recording", text)),
+    );
     rows.extend(
         s.step_s
             .map(|h| ("step", format!("{} µs", trimmed(h * 1e6)))),

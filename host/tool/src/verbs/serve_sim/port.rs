@@ -4,6 +4,7 @@ use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crepitus_client::discovery::{ServedName, user_folder};
 use crepitus_connection::{Clock, is_port};
+use crepitus_files::json_path;
 use crepitus_usb::cabled::CabledDevice;
 use crepitus_usb::pty::Pty;
 use serde_json::json;
@@ -59,7 +60,7 @@ pub(super) fn serve(
     let mut pty = made.map_err(|e| Failure::at(link, "cannot be created", &e))?;
     interrupt::listen();
     if as_json {
-        print_json(&json!({ "port": link, "name": name, "scene": title }))?;
+        print_json(&json!({ "port": json_path(link), "name": name, "scene": title }))?;
     } else {
         print(&format!(
             "{title} is served as {}\ntry `crepitus info --device {name}`; Ctrl-C stops it\n",

@@ -5,6 +5,7 @@ use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
 use crate::results::{self, Files, REPORT, footer, report_files};
 use crate::studying::Watch;
+use crepitus_files::json_path;
 use crepitus_study::coupled::{
     CoupledError, CoupledStudy, GEARS, LAGS, Margin, Setting, Verdict, most_share, run, tables,
 };
@@ -71,7 +72,7 @@ pub(super) fn coupled(
     let summary = summary(&study);
     results::write(folder, out, files(&study, &summary, pictures)?)?;
     if as_json {
-        print_json(&json!({ "out": out, "summary": summary }))?;
+        print_json(&json!({ "out": json_path(out), "summary": summary }))?;
     } else {
         print(&format!(
             "{}\nreport: {}\n",

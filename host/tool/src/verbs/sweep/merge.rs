@@ -3,6 +3,7 @@
 use super::{Arguments, store_failure, table, warn_of_failed, words};
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
+use crepitus_files::json_path;
 use crepitus_sweep::Store;
 use serde_json::json;
 use std::path::PathBuf;
@@ -34,7 +35,7 @@ pub(super) fn run(
     let sweep = store.identity();
     if as_json {
         return print_json(&json!({
-            "table": written.file,
+            "table": json_path(&written.file),
             "bytes": written.bytes,
             "runs": sweep.runs,
             "failed": written.failed,
