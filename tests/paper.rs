@@ -4,6 +4,7 @@
 mod support;
 
 use serde_json::Value;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use support::{csv, names, run, stderr, stdout};
@@ -244,7 +245,7 @@ fn an_overlay_is_read_as_its_file_says() {
     for row in rows.iter().step_by(200) {
         let (t, deg) = (1.0 + number(row, time), number(row, angle).to_degrees());
         let nm = number(row, torque);
-        text += &format!("{t}\t{deg}\t{nm}\t{nm}\t{nm}\n");
+        writeln!(text, "{t}\t{deg}\t{nm}\t{nm}\t{nm}").unwrap();
     }
     let file = home.path().join("knee.mot.txt");
     fs::write(&file, text).unwrap();

@@ -207,6 +207,7 @@ fn nonsense_is_refused_with_its_key() {
 
 /// What a laboratory's file says of itself is taken, and said in the summary of the run.
 #[test]
+#[expect(clippy::too_many_lines, reason = "a form after the other")]
 fn the_form_of_a_file_is_taken_from_it_and_said() {
     let folder = tempfile::tempdir().unwrap();
     let angle = |i: i32| 50.0 + 40.0 * (f64::from(i) * std::f64::consts::PI / 100.0).sin();

@@ -310,7 +310,7 @@ fn whole_line(head: &[Line], at: usize) -> (String, usize) {
 fn first_line(head: &[Line]) -> Option<usize> {
     head.iter().position(|(_, text)| {
         let text = text.trim();
-        !text.is_empty() && !is_comment(text) && !(text.starts_with("sep=") && text.len() <= 5)
+        !(text.is_empty() || is_comment(text) || text.starts_with("sep=") && text.len() <= 5)
     })
 }
 

@@ -543,7 +543,6 @@ mod tests {
             delta_phi_rad,
             omega_start_rad_s: omega_rad_s,
             omega_end_rad_s: omega_rad_s,
-            ..ShaftStep::default()
         };
         let scale = timing.scale().unwrap();
         let travel = Travel::of(&Checked::Step(shaft), &Position::at(to), &scale).unwrap();
