@@ -2,10 +2,10 @@
 
 use super::*;
 
-fn read(
-    bytes: &[u8],
-    wanted: &[&str],
-) -> Result<(Vec<String>, Vec<Vec<String>>, Vec<String>), String> {
+/// Names, rows, and what was assumed.
+type Read = (Vec<String>, Vec<Vec<String>>, Vec<String>);
+
+fn read(bytes: &[u8], wanted: &[&str]) -> Result<Read, String> {
     let text = |error: TableError| error.to_string();
     let mut table = Table::open(bytes, Names::Holding(wanted)).map_err(text)?;
     let names = table.names().to_vec();
