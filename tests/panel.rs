@@ -570,6 +570,56 @@ fn has_its_recordings(page: &mut Page, session: &Path) {
 }
 
 #[test]
+fn answers_without_torque_do_not_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let sessions = folder.path().to_str().unwrap();
+    let panel = Panel::new(&["--device", "sim", "--sessions", sessions]);
+    let mut page = panel.controlling();
+    let begin = json!({ "lesson": "blind-six", "students": ["A"], "seed": 7 });
+    page.ask("lesson-begin", begin).unwrap();
+    let session = folder.path().join(&names(folder.path())[0]);
+    for trial in 1..=3 {
+        page.ask("lesson-start", json!({})).unwrap();
+        match trial {
+            1 => {}
+            2 => page.arm(),
+            // Of the time that the motor is driven, less than half.
+            _ => {
+                page.ask("disarm", json!({})).unwrap();
+                page.go_on(Duration::from_millis(700));
+                page.arm();
+            }
+        }
+        page.go_on(Duration::from_millis(if trial == 3 { 200 } else { 1500 }));
+        let (disorder, level) = truth(&session, trial);
+        let answer =
+            json!({ "student": "A", "disorder": disorder, "level": level, "confidence": 4 });
+        page.ask("lesson-answer", answer).unwrap();
+        page.ask("lesson-next", json!({})).unwrap();
+    }
+    let ended = page.ask("lesson-end", json!({ "language": "en" })).unwrap();
+    page.until("results", |page| !page.latest["lesson"]["summary"].is_null());
+    let lesson = &page.latest["lesson"];
+    let of = |name: &str| [0, 1, 2].map(|at: usize| lesson["answers"][at][name].clone());
+    assert_eq!(of("counts"), [false, true, false].map(Value::from));
+    assert_eq!(of("torque_share")[0], 0.0);
+    let all = &lesson["summary"]["all"];
+    assert_eq!((&all["answers"], &all["right"]), (&json!(1), &json!(1)));
+    assert_eq!(all["without_torque"], 2);
+    // The same in every file.
+    let stored: Value =
+        serde_json::from_str(&fs::read_to_string(session.join("session.json")).unwrap()).unwrap();
+    for (answer, share) in stored["answers"].as_array().unwrap().iter().zip(of("torque_share")) {
+        assert_eq!(answer["torque_share"], share);
+    }
+    let table = fs::read_to_string(session.join("answers.csv")).unwrap();
+    let counts: Vec<_> = table.lines().map(|line| line.rsplit(',').next().unwrap()).collect();
+    assert_eq!(counts, ["counts", "false", "true", "false"]);
+    let report = fs::read_to_string(ended["report"].as_str().unwrap()).unwrap();
+    assert!(report.contains("left out: torque for 0 % of the time"));
+}
+
+#[test]
 fn a_recording_is_shown_in_full_detail() {
     let folder = tempfile::tempdir().unwrap();
     let sessions = folder.path().to_str().unwrap();

@@ -245,6 +245,8 @@ fn answers(session: &Session) -> Vec<Vec<String>> {
         "level_right",
         "time_s",
         "recording",
+        "torque_share",
+        "counts",
     ];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     let mut answers: Vec<_> = lesson.answers().iter().collect();
@@ -267,6 +269,11 @@ fn answers(session: &Session) -> Vec<Vec<String>> {
             level_right.unwrap_or_default(),
             answer.time_s.to_string(),
             recording.to_owned(),
+            answer
+                .torque_share
+                .map(|share| share.to_string())
+                .unwrap_or_default(),
+            answer.counts().to_string(),
         ]);
     }
     rows

@@ -21,6 +21,10 @@
 //! trial is the current one and its knee is hidden; once the knee is revealed, an answer is
 //! rejected. A trial that was left without an answer stays without.
 //!
+//! **What counts.** An answer counts if the motor was driven for at least [`LEAST_TORQUE_SHARE`] of the
+//! time from the start of its trial on: who felt a brace without torque has felt no knee. Others are kept, and are
+//! left out of the results.
+//!
 //! There is no clock here: times are seconds of the time axis that the page shows, given by the
 //! caller.
 
@@ -38,6 +42,10 @@ use serde::{Deserialize, Serialize};
 /// Largest seed: a number that JavaScript, JSON and a person's note keep exactly, 2⁵³ - 1.
 pub const MOST_SEED: u64 = (1 << 53) - 1;
 
+/// Least share of the time from the start of a trial to an answer in which the motor was driven, for the
+/// answer to count.
+pub const LEAST_TORQUE_SHARE: f64 = 0.5;
+
 /// A lesson.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lesson {
@@ -50,6 +58,8 @@ pub struct Lesson {
     /// The current trial, from 0.
     pub(crate) current: usize,
     pub(crate) began: bool,
+    /// Share of the current trial's time so far in which the motor was driven; `None` if nobody has said.
+    pub(crate) torque_share: Option<f64>,
     pub(crate) ended: bool,
     pub(crate) answers: Vec<Answer>,
     pub(crate) notes: Vec<Note>,
@@ -72,6 +82,18 @@ pub struct Answer {
     pub confidence: u8,
     /// Time, s.
     pub time_s: f64,
+    /// Share of the trial's time up to it in which the motor was driven; `None` in sessions of
+    /// earlier versions, which did not measure it.
+    #[serde(default)]
+    pub torque_share: Option<f64>,
+}
+
+impl Answer {
+    /// Returns whether the knee was there to be felt: see [`LEAST_TORQUE_SHARE`].
+    pub fn counts(&self) -> bool {
+        self.torque_share
+            .is_none_or(|share| share >= LEAST_TORQUE_SHARE)
+    }
 }
 
 /// A note on the time line.
@@ -138,6 +160,7 @@ impl Lesson {
             order,
             current: 0,
             began: false,
+            torque_share: None,
             ended: false,
             answers: Vec::new(),
             notes: Vec::new(),
@@ -156,7 +179,14 @@ impl Lesson {
             });
         }
         self.began = true;
+        self.torque_share = None;
         Ok(self.knee())
+    }
+
+    /// Takes the share of the current trial's time so far in which the motor was driven, 0 to 1: that of the
+    /// answers that follow.
+    pub const fn set_torque_share(&mut self, share: f64) {
+        self.torque_share = Some(share);
     }
 
     /// Takes a student's answer to the current trial.
@@ -212,6 +242,7 @@ impl Lesson {
             level: level.filter(|_| finding != Finding::Healthy),
             confidence,
             time_s,
+            torque_share: self.torque_share,
         });
         Ok(())
     }

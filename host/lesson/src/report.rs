@@ -185,8 +185,12 @@ fn trials(session: &Session, student: &str, words: &Words<'_>) -> Markup {
     }
 }
 
-/// Returns whether disorder and level are right.
+/// Returns whether disorder and level are right, or why the answer does not count.
 fn verdict(session: &Session, answer: &Answer, words: &Words<'_>) -> String {
+    if let (false, Some(share)) = (answer.counts(), answer.torque_share) {
+        let share = words.number(100.0 * share, 0);
+        return words.with("report.without_torque", &[("share", &share)]);
+    }
     let knee = session.lesson.knee_of(answer.trial);
     words.get(match (answer.is_right(knee), answer.is_level_right(knee)) {
         (false, _) => "report.no",
@@ -283,6 +287,7 @@ fn notes(session: &Session, words: &Words<'_>) -> Markup {
 /// Remarks on how to read the numbers.
 fn remarks(summary: &Summary, words: &Words<'_>) -> Markup {
     let students = || summary.students.iter().map(|student| &student.scores);
+    let without_torque = summary.all.without_torque > 0;
     let few = students().any(|scores| scores.answers < ENOUGH);
     let no_width = |scores: &Scores| {
         let both = [scores.kappa, scores.level_kappa];
@@ -290,6 +295,7 @@ fn remarks(summary: &Summary, words: &Words<'_>) -> Markup {
     };
     let keys = [
         ("report.about_kappa", true),
+        ("report.left_out", without_torque),
         ("report.few", few),
         ("report.no_width", students().any(no_width)),
         ("report.pooled", summary.students.len() > 1),

@@ -168,6 +168,7 @@ impl Session {
             order: record.order,
             current: record.trial - 1,
             began: record.began,
+            torque_share: None,
             ended: record.ended,
             answers: record.answers,
             notes: record.notes,
@@ -188,6 +189,7 @@ impl Record {
         let answer_fits = |answer: &Answer| {
             trials.contains(&answer.trial)
                 && (1..=5).contains(&answer.confidence)
+                && answer.torque_share.is_none_or(|share| (0.0..=1.0).contains(&share))
                 && self.students.contains(&answer.student)
         };
         let first = |at: usize, answer: &Answer| {
@@ -201,7 +203,7 @@ impl Record {
         } else if !trials.contains(&self.trial) {
             Err("`trial` is not one of the order")
         } else if !self.answers.iter().all(answer_fits) {
-            Err("an answer has no such trial, student or confidence")
+            Err("an answer has no such trial, student, confidence or share of torque")
         } else if !(0..)
             .zip(&self.answers)
             .all(|(at, answer)| first(at, answer))

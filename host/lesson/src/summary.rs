@@ -30,11 +30,13 @@ pub struct StudentScores {
     pub scores: Scores,
 }
 
-/// Results of some answers.
+/// Results of some answers, of those that [count](Answer::counts).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scores {
     /// Number of answers.
     pub answers: usize,
+    /// Number of answers that do not count: there was no torque for too much of the time.
+    pub without_torque: usize,
     /// Number of answers with the right disorder.
     pub right: usize,
     /// Mean confidence, 1 to 5, of the answers with the right disorder.
@@ -112,7 +114,12 @@ impl Scores {
         let mut disorders = Table::<FINDINGS>::default();
         let mut levels = Table::<GRADES>::default();
         let (mut right, mut wrong) = (Mean::default(), Mean::default());
+        let mut without_torque = 0;
         for answer in answers {
+            if !answer.counts() {
+                without_torque += 1;
+                continue;
+            }
             let knee = lesson.knee_of(answer.trial);
             if let Some(truth) = knee.disorder {
                 disorders.count(place(truth), place(answer.disorder));
@@ -133,6 +140,7 @@ impl Scores {
         }
         Self {
             answers: right.count + wrong.count,
+            without_torque,
             right: right.count,
             confidence_right: right.mean(),
             confidence_wrong: wrong.mean(),

@@ -88,7 +88,7 @@ impl From<&Knee> for KneeView {
 }
 
 /// An answer.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AnswerView {
     /// Pseudonym.
     pub student: String,
@@ -106,6 +106,10 @@ pub struct AnswerView {
     /// Whether the level is right; `None` while it is hidden, and where the knee or the answer
     /// has no level.
     pub level_right: Option<bool>,
+    /// Whether it counts: the motor was driven for long enough.
+    pub counts: bool,
+    /// Share of the trial's time up to it in which the motor was driven.
+    pub torque_share: Option<f64>,
 }
 
 /// Disorders and levels that can be answered.
@@ -171,6 +175,8 @@ impl Lesson {
             confidence: revealed.then_some(answer.confidence),
             right: revealed.then(|| answer.is_right(knee)),
             level_right: answer.is_level_right(knee).filter(|_| revealed),
+            counts: answer.counts(),
+            torque_share: answer.torque_share,
         }
     }
 }

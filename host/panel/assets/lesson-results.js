@@ -153,6 +153,8 @@ export function showResults(host, lesson) {
           { class: "trial" },
           text("results.total", { right: summary.right, answers: summary.answers }),
         ),
+      summary?.all.without_torque > 0 &&
+        el("p", { class: "hint" }, text("results.left-out", { count: summary.all.without_torque })),
       el("div", { class: "row" }, report, close),
       lesson.stored && el("p", { class: "hint" }, text("run.stored", { folder: lesson.stored })),
       why && el("p", { class: "hint" }, text("results.disabled", { why })),

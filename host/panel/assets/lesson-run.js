@@ -227,7 +227,9 @@ export function updateRun(lesson) {
       : lesson.began
         ? all && lesson.blind
           ? text("run.all-answered")
-          : ""
+          : latest.status?.state === "armed"
+            ? ""
+            : text("run.no-torque")
         : text("run.not-begun"),
   );
   showAnswers(lesson);
@@ -247,7 +249,14 @@ function showAnswers(lesson) {
             confidence: given.confidence,
           })
         : text("answer.given", { student });
-      return el("li", null, shown, " ", outcome(given.right));
+      const uncounted = text("answer.uncounted", { share: number(100 * given.torque_share, 0) });
+      return el(
+        "li",
+        null,
+        shown,
+        " ",
+        given.counts ? outcome(given.right) : el("span", { class: "tag no" }, uncounted),
+      );
     }),
   );
 }

@@ -9,6 +9,7 @@ import { showSetup, updateSetup } from "./lesson-setup.js";
 import { onLanguage } from "./strings.js";
 
 let shown = null;
+let stateShown = null;
 
 function viewOf(lesson) {
   if (!lesson) return "setup";
@@ -32,6 +33,12 @@ export function startLesson() {
   on("hello", () => render(true));
   on("presets", () => shown === "setup" && render(true));
   on("lesson", () => render(false));
+  on("status", () => {
+    const state = latest.status?.state;
+    if (state === stateShown) return;
+    stateShown = state;
+    if (shown === "run") render(false);
+  });
   for (const kind of ["holder", "open", "lost"]) on(kind, () => render(shown === "results"));
   onLanguage(() => render(true));
 }

@@ -28,7 +28,7 @@ use crate::shared::{Latest, Order, Outcome, Shared};
 use axum::extract::ws::Utf8Bytes;
 use crepitus_client::{Client, Error, Event, Transport};
 use crepitus_live::{Aim, Envelope, Pace, Target};
-use crepitus_protocol::telemetry::Block;
+use crepitus_protocol::telemetry::{Block, SampleFlags};
 use crepitus_protocol::{Revision, Session, TICKS_PER_S, Values};
 use crepitus_recording::Samples;
 use crepitus_scene::preset::Preset;
@@ -326,6 +326,9 @@ impl<'p, T: Transport> Keeper<'p, T> {
         for row in self.samples.rows(block) {
             self.now_s = row.time_s;
             self.envelope.take(&row);
+            if let Some(held) = &mut self.lesson {
+                held.take(row.flags.has(SampleFlags::ENERGISED));
+            }
             if let Some(pace) = &mut self.pace {
                 pace.take(&row);
             }

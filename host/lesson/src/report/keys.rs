@@ -36,6 +36,8 @@ pub const KEYS: &[&str] = &[
     "report.yes",
     "report.no",
     "report.not_the_level",
+    "report.without_torque",
+    "report.left_out",
     "report.no_answer",
     "report.confusion",
     "report.knees",

@@ -23,6 +23,9 @@ pub(super) struct Held {
     folder: Option<SessionFolder>,
     /// Time at which the current trial began, s.
     began_s: f64,
+    /// Samples of the current trial, and those of them with torque.
+    samples: u64,
+    under_torque: u64,
     /// Time at which the healthy knee was applied between two trials, s; none while that of
     /// a trial is on the device.
     left_s: Option<f64>,
@@ -42,6 +45,20 @@ impl Held {
         let last = lesson.trial() - 1;
         let is_left = self.left_s.is_some_and(|left_s| now_s > left_s + SETTLED_S);
         last > 0 && !lesson.is_revealed(last) && !is_left
+    }
+
+    /// Counts a sample of the current trial.
+    pub(super) fn take(&mut self, is_driven: bool) {
+        if self.session.lesson.began() {
+            self.samples += 1;
+            self.under_torque += u64::from(is_driven);
+        }
+    }
+
+    /// Share of the current trial's samples with torque.
+    #[expect(clippy::cast_precision_loss, reason = "days of samples are below 2^53")]
+    fn torque_share(&self) -> f64 {
+        self.under_torque as f64 / self.samples.max(1) as f64
     }
 
     /// Returns whether they see the torque all the same.
@@ -102,6 +119,8 @@ impl<T: Transport> Keeper<'_, T> {
             session,
             folder,
             began_s: 0.0,
+            samples: 0,
+            under_torque: 0,
             left_s: None,
         });
         self.hide_recordings();
@@ -120,6 +139,7 @@ impl<T: Transport> Keeper<'_, T> {
         let trial = lesson.trial();
         let target = lesson.view(None).target;
         (held.began_s, held.left_s) = (now_s, None);
+        (held.samples, held.under_torque) = (0, 0);
         self.publish_parameters();
         if let Err(error) = self.apply_unseen(&preset) {
             if let Some(held) = &mut self.lesson {
@@ -171,7 +191,10 @@ impl<T: Transport> Keeper<'_, T> {
         confidence: u8,
     ) -> Outcome {
         let now_s = self.now_s;
-        let lesson = self.running_lesson()?;
+        let held = self.lesson.as_mut().ok_or(NO_LESSON)?;
+        let share = held.torque_share();
+        let lesson = &mut held.session.lesson;
+        lesson.set_torque_share(share);
         lesson
             .answer(student, disorder, level, confidence, now_s)
             .map_err(|error| error.to_string())?;
