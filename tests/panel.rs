@@ -598,7 +598,9 @@ fn answers_without_torque_do_not_count() {
         page.ask("lesson-next", json!({})).unwrap();
     }
     let ended = page.ask("lesson-end", json!({ "language": "en" })).unwrap();
-    page.until("results", |page| !page.latest["lesson"]["summary"].is_null());
+    page.until("results", |page| {
+        !page.latest["lesson"]["summary"].is_null()
+    });
     let lesson = &page.latest["lesson"];
     let of = |name: &str| [0, 1, 2].map(|at: usize| lesson["answers"][at][name].clone());
     assert_eq!(of("counts"), [false, true, false].map(Value::from));
@@ -609,11 +611,19 @@ fn answers_without_torque_do_not_count() {
     // The same in every file.
     let stored: Value =
         serde_json::from_str(&fs::read_to_string(session.join("session.json")).unwrap()).unwrap();
-    for (answer, share) in stored["answers"].as_array().unwrap().iter().zip(of("torque_share")) {
+    for (answer, share) in stored["answers"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(of("torque_share"))
+    {
         assert_eq!(answer["torque_share"], share);
     }
     let table = fs::read_to_string(session.join("answers.csv")).unwrap();
-    let counts: Vec<_> = table.lines().map(|line| line.rsplit(',').next().unwrap()).collect();
+    let counts: Vec<_> = table
+        .lines()
+        .map(|line| line.rsplit(',').next().unwrap())
+        .collect();
     assert_eq!(counts, ["counts", "false", "true", "false"]);
     let report = fs::read_to_string(ended["report"].as_str().unwrap()).unwrap();
     assert!(report.contains("left out: torque for 0 % of the time"));

@@ -42,7 +42,9 @@ mod view;
 
 pub use finding::{Finding, Knee};
 pub use folder::{FolderError, SessionFolder};
-pub use lesson::{Answer, BeginError, By, LEAST_TORQUE_SHARE, Lesson, LessonError, MOST_SEED, Note};
+pub use lesson::{
+    Answer, BeginError, By, LEAST_TORQUE_SHARE, Lesson, LessonError, MOST_SEED, Note,
+};
 pub use plan::{
     CheckedPlan, Feedback, Known, MOST_STUDENTS, MOST_TRIALS, Plan, PlanError, PlannedKnee,
 };

@@ -189,7 +189,9 @@ impl Record {
         let answer_fits = |answer: &Answer| {
             trials.contains(&answer.trial)
                 && (1..=5).contains(&answer.confidence)
-                && answer.torque_share.is_none_or(|share| (0.0..=1.0).contains(&share))
+                && answer
+                    .torque_share
+                    .is_none_or(|share| (0.0..=1.0).contains(&share))
                 && self.students.contains(&answer.student)
         };
         let first = |at: usize, answer: &Answer| {

@@ -83,3 +83,25 @@ fn nothing_answered_has_no_numbers() {
     );
     assert_eq!(scores.confusion, Confusion::default());
 }
+
+#[test]
+fn an_answer_counts_with_torque_for_half_of_the_time() {
+    let known = Known {
+        own_preset: &|_| None,
+        target: &|_| true,
+    };
+    let text = "title = \"x\"\nblind = true\nfeedback = \"end\"\n[[knee]]\npreset = \"healthy\"\n";
+    let plan = Plan::from_toml(text).unwrap().check(known).unwrap();
+    let students = ["A", "B", "C"].map(str::to_owned).to_vec();
+    let mut lesson = Lesson::begin("x", plan, students, 5).unwrap();
+    lesson.start().unwrap();
+    for (student, share) in [("A", 0.0), ("B", 0.499), ("C", 0.5)] {
+        lesson.set_torque_share(share);
+        lesson.answer(student, "healthy", None, 3, 0.0).unwrap();
+    }
+    let summary = Summary::of(&lesson);
+    assert_eq!((summary.answers, summary.right), (1, 1));
+    assert_eq!(summary.all.without_torque, 2);
+    assert_eq!(summary.students[0].scores.answers, 0);
+    assert_eq!(summary.students[0].scores.confidence_right, None);
+}

@@ -37,6 +37,7 @@ fn the_message_is_that_of_the_page() {
     assert_eq!(view(&lesson, None), expected);
 
     lesson.start().unwrap();
+    lesson.set_torque_share(0.75);
     lesson
         .answer("A", "spasticity", Some("mild"), 4, 7.0)
         .unwrap();
@@ -48,7 +49,7 @@ fn the_message_is_that_of_the_page() {
     });
     expected["answers"] = json!([{
         "student": "A", "trial": 1, "disorder": "spasticity", "level": "mild", "confidence": 4,
-        "right": true, "level_right": false,
+        "right": true, "level_right": false, "counts": true, "torque_share": 0.75,
     }]);
     assert_eq!(view(&lesson, Some("folder")), expected);
 
@@ -62,7 +63,7 @@ fn the_message_is_that_of_the_page() {
     expected["time_s"] = json!(60.0);
     expected["ended"] = json!(true);
     let scores = json!({
-        "answers": 1, "right": 1, "confidence_right": 4.0, "confidence_wrong": null, "kappa": null,
+        "answers": 1, "without_torque": 0, "right": 1, "confidence_right": 4.0, "confidence_wrong": null, "kappa": null,
         "level_kappa": null,
         "confusion": { "rows": ["spasticity"], "columns": ["spasticity"], "counts": [[1]] },
     });
