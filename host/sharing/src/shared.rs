@@ -16,8 +16,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// Time for which programs try to connect to each other: one of them may just be
-/// opening the port.
-const ATTACH: Duration = Duration::from_secs(1);
+/// opening or closing the port, which takes seconds on a computer that is busy.
+const ATTACH: Duration = Duration::from_secs(10);
 
 /// Interval of the tries.
 const TRY_EVERY: Duration = Duration::from_millis(3);
@@ -296,5 +296,30 @@ fn lost(port: &str) -> TransportError {
     TransportError::Lost {
         port: port.to_owned(),
         detail: "the program that had it open has ended, and it does not open again".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_that_is_slow_to_let_go_of_the_port_is_waited_for() {
+        let port = format!("/dev/crepitus-none-{}", std::process::id());
+        let place = Place::of(&port).unwrap();
+        let lock = place.lock().unwrap();
+        let lock = lock.expect("nobody else has this port");
+        let slow = Duration::from_millis(1_500);
+        let other = thread::spawn(move || {
+            thread::sleep(slow);
+            drop(lock);
+        });
+        let began = Instant::now();
+        // There is no such port, which is seen once the other program is gone.
+        let error = Shared::open(&port, "a test").unwrap_err();
+        assert!(matches!(error, TransportError::NotFound { .. }), "{error}");
+        assert!(began.elapsed() >= slow);
+        other.join().unwrap();
+        std::fs::remove_file(place.socket.with_extension("lock")).unwrap();
     }
 }
