@@ -499,6 +499,9 @@ fn a_blind_lesson_hides_the_knee_until_it_was_named() {
         assert!(error.contains("blind lesson"), "{error}");
         assert!(page.ask("apply", json!({ "preset": "healthy" })).is_err());
         assert!(page.ask("set", json!({ "changes": [] })).is_err());
+        // The page in control did not answer while the other one was looked at.
+        page.arm();
+        page.go_on(Duration::from_millis(700));
         let (disorder, level) = truth(&session, trial);
         page.ask("note", json!({ "text": format!("note of {trial}") }))
             .unwrap();

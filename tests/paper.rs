@@ -288,7 +288,8 @@ fn an_overlay_is_read_as_its_file_says() {
     }
     let output = overlaid("c", "t_s=time,torque_nm=T");
     assert_eq!(output.status.code(), Some(2));
-    let said = stderr(&output);
+    let printed: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let said = printed["error"]["message"].as_str().unwrap();
     assert!(
         said.contains("used twice, for columns 4 and 5") && said.contains("\"#4\""),
         "{said}"

@@ -468,7 +468,7 @@ fn a_broken_summary_is_named_itself() {
     support::refuses(
         &["run", file],
         2,
-        &format!("{file}: `title`: in `scene_as_run`"),
+        &format!("{file}: `duration_s`: in `scene_as_run`"),
     );
 }
 

@@ -275,7 +275,7 @@ impl<R: Read> Table<R> {
         }
     }
 
-    /// What was assumed of the file so far, a sentence each.
+    /// Assumptions about the file so far, a sentence each.
     pub fn assumptions(&self) -> Vec<String> {
         let mut all = self.layout.notes.clone();
         if let Some(encoding) = self.lines.encoding() {

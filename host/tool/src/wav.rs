@@ -3,6 +3,7 @@
 use crate::cli::Force;
 use crate::failure::{Failure, print, warn};
 use crate::output::to_stderr;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use crepitus_files::output::{Inputs, NewFile, is_stdout};
 use crepitus_scene::trace::Column;
@@ -14,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Wav {
     /// Also write a torque as a sound: 48 kHz, from 30 Hz on, its largest sample 1 dB below full scale; `-`
     /// is standard output.
-    #[arg(id = "wav", long = "wav", value_name = "FILE.wav", value_parser = named)]
+    #[arg(id = "wav", long = "wav", value_name = "FILE.wav", value_parser = PathBufValueParser::new().try_map(named))]
     file: Option<PathBuf>,
 
     /// Which torque.
@@ -42,8 +43,7 @@ impl Of {
 }
 
 /// Refuses the name of something else than a sound.
-fn named(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
+fn named(path: PathBuf) -> Result<PathBuf, String> {
     if is_stdout(&path) {
         return Ok(path);
     }

@@ -29,7 +29,7 @@ impl Observer for Keep {
     }
 }
 
-/// What happens in a scene with this solver.
+/// Events of a scene with this solver.
 fn events(body: &str, solver: &str) -> Keep {
     let text = format!("version = 1\ntitle = \"off the grid\"\n{body}\n[solver]\n{solver}\n");
     let scene = Scene::parse(Path::new("test.toml"), &text, &Overrides::default())
@@ -126,7 +126,7 @@ fn a_joint_at_rest_feels_no_tooth_that_passes_in_time() {
     }
 }
 
-/// Where the line of the limit comes to the torque of the release, s: from the closed form.
+/// Time at which the line of the limit comes to the torque of the release, s: from the closed form.
 const RELEASE_S: f64 = 0.173_959_245_15;
 
 #[test]

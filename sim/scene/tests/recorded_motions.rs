@@ -205,7 +205,7 @@ fn nonsense_is_refused_with_its_key() {
     }
 }
 
-/// What a laboratory's file says of itself is taken, and said in the summary of the run.
+/// A laboratory's file says of itself what its numbers are; the summary of the run repeats it.
 #[test]
 #[expect(clippy::too_many_lines, reason = "a form after the other")]
 fn the_form_of_a_file_is_taken_from_it_and_said() {

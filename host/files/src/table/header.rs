@@ -14,7 +14,7 @@
 
 use super::layout::Line;
 
-/// What the header declares, each with its line.
+/// Declarations of the header, each with its line.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Header {
     /// The title: the name of the table that a program wrote, such as `Coordinates`.

@@ -134,7 +134,7 @@ fn a_file_without_a_unit_is_asked_for_one() {
     );
 }
 
-/// Where the header comes first it still does not beat both the person and the numbers.
+/// A header that comes first still does not beat both the person and the numbers.
 #[test]
 fn an_overlay_yields_to_the_header_unless_the_numbers_speak_against_it() {
     use AngleUnit::{Deg, Rad};

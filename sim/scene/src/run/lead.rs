@@ -20,7 +20,7 @@ const ROUNDING_F64: f64 = 1e-12;
 /// The same in single precision.
 const ROUNDING_F32: f64 = 1e-4;
 
-/// What counts as at rest, as a share of the rounding of the velocity of a swing over Ts/kr.
+/// Velocity below which a body is at rest, as a share of the rounding of the velocity of a swing over Ts/kr.
 const REST: f64 = 1e-6;
 
 /// Duration and extent of the shaft's lag behind the object.

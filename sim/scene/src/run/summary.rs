@@ -167,7 +167,7 @@ pub struct TorqueSummary {
     pub rms_nm: f64,
 }
 
-/// What the energy tank held back.
+/// Torque that the energy tank held back.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TankSummary {
     /// The law of the tank: `ticks`, the device's, or `continuous`, that of `reference`.

@@ -162,7 +162,7 @@ fn run_section(s: &Summary) -> Section {
     section("Run", rows)
 }
 
-/// What the energy tank held back.
+/// Table of the torque that the energy tank held back.
 fn tank_section(tank: &TankSummary) -> Section {
     let first = tank
         .first_s
