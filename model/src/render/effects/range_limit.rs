@@ -338,7 +338,7 @@ impl<F: Real> Wall<F> {
                 self.stage = Stage::Out;
                 on_change.tell(Word::Leave, || travel.reaches(&end.place), nm, nm);
             }
-        } else if self.play.hold() != Hold::Upper || beyond_rad < end.cap_rad {
+        } else if beyond_rad < end.cap_rad || self.turns_back(end, nm) {
             self.stage = Stage::In;
         } else {
             if is_below_cap && !is_reported {
@@ -349,6 +349,18 @@ impl<F: Real> Wall<F> {
             self.stage = Stage::AtCap;
         }
         nm
+    }
+
+    /// Returns whether the torque is below its limit. A joint that rests at the cap is not, as rounding would let it
+    /// come to the cap once more.
+    #[inline]
+    fn turns_back(&self, end: &End<F>, nm: F) -> bool {
+        let slack_nm = if self.stage == Stage::AtCap {
+            F::LIMIT_SLACK * end.cap_nm
+        } else {
+            F::ZERO
+        };
+        self.play.hold() != Hold::Upper && nm <= end.cap_nm - slack_nm
     }
 
     /// The joint meets the wall: the spring begins at its place. If the wall was moved

@@ -368,8 +368,10 @@ impl<F: Real> Law for Spasticity<F> {
     }
 
     fn retime(&mut self, settings: &SpasticitySettings, timing: &Timing, _: f64) {
-        // The memory of a reflex is of whole ticks.
-        self.caught.retime(settings, timing);
+        match self.form {
+            Form::Catch => self.caught.retime(settings, timing),
+            Form::Reflex => self.reflex.retime(settings, timing),
+        }
     }
 
     fn forget_part(&mut self, before: &Self) {

@@ -4,9 +4,10 @@
 //! u = min(Tmax, k·max(0, s·(φ − λ + μΩ)))        τa·ẏ + y = u(t − τd)        T = s·y
 //! ```
 //!
-//! The answer is solved exactly for an input that is linear within a tick. The lag
-//! of the device's own velocity counts as part of τd. Passive below and active above
-//! some hertz; with μ ≥ τd + τa it takes energy from a steady stretch.
+//! The answer is solved exactly for an input that is linear within a tick, and in f64 where
+//! it jumps with the joint's velocity, too, as it does in a simulator. The lag of the
+//! device's own velocity counts as part of τd. Passive below and active above some hertz;
+//! with μ ≥ τd + τa it takes energy from a steady stretch.
 
 use super::{SpasticitySettings, Threshold};
 use crate::joint::SettingsError;
@@ -17,6 +18,9 @@ use crate::render::position::{Scale, Travel};
 
 /// Ticks that are remembered: 0.1 s at 20 kHz, and one to interpolate.
 const REMEMBERED: usize = 2048;
+
+/// Jumps of the input that may be on their way: one more is answered as if it took a tick.
+const JUMPS: usize = 8;
 
 /// Coefficients of [`Reflex`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,6 +38,8 @@ pub struct ReflexCoefficients<F> {
     /// what it gains in a tick is less than its last digit.
     lost: F,
     mean: F,
+    /// A tick in units of τa.
+    tick: F,
 }
 
 impl<F: Real> ReflexCoefficients<F> {
@@ -69,8 +75,66 @@ impl<F: Real> ReflexCoefficients<F> {
             delay_rest: F::from_f64((ticks - whole).max(0.0)),
             lost: F::from_f64(lost),
             mean: F::from_f64(lost / x),
+            tick: F::from_f64(x),
         })
     }
+
+    /// u of a joint that is so far beyond the threshold, N·m.
+    #[inline]
+    fn input(&self, beyond: F) -> (Drive, F) {
+        if beyond <= F::ZERO || self.most_rad == F::ZERO {
+            (Drive::Silent, F::ZERO)
+        } else if beyond < self.most_rad {
+            (Drive::Rising, self.gain * beyond)
+        } else {
+            (Drive::Most, self.most_nm)
+        }
+    }
+}
+
+/// A jump of u within a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Jump<F> {
+    /// Ticks since the end of its own.
+    ago: usize,
+    /// Share of its tick at which it is.
+    at: F,
+    /// Its height, N·m; zero for none.
+    nm: F,
+}
+
+impl<F: Real> Jump<F> {
+    /// By how much u(t − τd) at the end of this tick is more than a straight line through the
+    /// ends of the jump's own, and e for a jump that does not take all of this tick; forgets
+    /// itself when that is over. N·m.
+    fn passes(&mut self, with: &ReflexCoefficients<F>) -> (F, F) {
+        // The share of the jump's tick that is answered, or that was a tick ago.
+        let answered = F::ONE - with.delay_rest;
+        let is_past = answered >= self.at;
+        let nm = self.nm;
+        let gained_nm = |since: F| nm * (with.mean - (-(with.tick * since)).exp());
+        if self.ago < with.delay {
+            return (F::ZERO, F::ZERO);
+        }
+        if self.ago > with.delay {
+            self.nm = F::ZERO;
+            let is_now = !is_past && self.ago == with.delay.wrapping_add(1);
+            let since = F::ONE + answered - self.at;
+            return (F::ZERO, if is_now { gained_nm(since) } else { F::ZERO });
+        }
+        if is_past {
+            (nm - nm * answered, gained_nm(answered - self.at))
+        } else {
+            (-(nm * answered), F::ZERO)
+        }
+    }
+}
+
+/// The part of a tick that is followed: the whole of it, but for a simulator that splits it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Share<F> {
+    from: F,
+    length: F,
 }
 
 /// Regime of u, the muscle's input.
@@ -95,6 +159,12 @@ pub(super) struct Reflex<F> {
     /// e, by how much y differs from it, N·m.
     lag_nm: F,
     drive: Drive,
+    jumps: [Jump<F>; JUMPS],
+    /// The one of them where this travel began.
+    jumped: Option<Jump<F>>,
+    share: Share<F>,
+    /// Ω at the end of what was followed last, rad/s.
+    omega_rad_s: Option<F>,
 }
 
 impl<F: Real> Reflex<F> {
@@ -107,6 +177,13 @@ impl<F: Real> Reflex<F> {
             delayed_nm: F::ZERO,
             lag_nm: F::ZERO,
             drive: Drive::Silent,
+            jumps: [Jump::default(); JUMPS],
+            jumped: None,
+            share: Share {
+                from: F::ZERO,
+                length: F::ONE,
+            },
+            omega_rad_s: None,
         }
     }
 
@@ -115,6 +192,8 @@ impl<F: Real> Reflex<F> {
         self.delayed_nm = F::ZERO;
         self.lag_nm = F::ZERO;
         self.drive = Drive::Silent;
+        self.jumps = [Jump::default(); JUMPS];
+        self.omega_rad_s = None;
     }
 
     pub(super) fn torque_nm(&self) -> F {
@@ -138,12 +217,25 @@ impl<F: Real> Reflex<F> {
         }
     }
 
+    /// Goes on in ticks, or parts of a tick, of this length.
+    pub(super) fn retime(&mut self, settings: &SpasticitySettings, timing: &Timing) {
+        let part = F::from_f64(timing.step_s / settings.activation_s);
+        self.share.length = part / self.with.tick;
+    }
+
     /// Answers as it did before a part of a tick, which has no place of its own in its memory: the
-    /// answer to the last part is that to the tick.
+    /// answer to the last part is that to the tick, and to the jumps within it.
     pub(super) fn forget_part(&mut self, before: &Self) {
-        let drive = self.drive;
-        *self = *before;
-        self.drive = drive;
+        let part = *self;
+        *self = Self {
+            drive: part.drive,
+            omega_rad_s: part.omega_rad_s,
+            ..*before
+        };
+        self.share.from += self.share.length;
+        if let Some(jump) = part.jumped {
+            self.keep(jump);
+        }
     }
 
     pub(super) fn release(&mut self, slew_nm: F) {
@@ -156,28 +248,52 @@ impl<F: Real> Reflex<F> {
     #[inline(never)]
     pub(super) fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = &self.with;
-        let beyond = with.threshold.end_beyond(travel);
-        let drive = if beyond <= F::ZERO || with.most_rad == F::ZERO {
-            Drive::Silent
-        } else if beyond < with.most_rad {
-            Drive::Rising
-        } else {
-            Drive::Most
-        };
+        let (drive, nm) = with.input(with.threshold.end_beyond(travel));
         if drive != self.drive {
             self.tell(drive, travel, on_change);
         }
-        let nm = match drive {
-            Drive::Silent => F::ZERO,
-            Drive::Rising => self.with.gain * beyond,
-            Drive::Most => self.with.most_nm,
-        };
+        // The device's own velocity does not jump.
+        if !F::IS_SINGLE {
+            self.look_for_jump(travel);
+        }
         if travel.ticks == 1 {
             self.answer(nm);
         } else {
             self.answer_over_gap(nm, travel.ticks);
         }
         self.torque_nm()
+    }
+
+    /// Keeps a jump of u where this travel begins.
+    fn look_for_jump(&mut self, travel: &Travel<F>) {
+        self.jumped = None;
+        let was_rad_s = self.omega_rad_s.replace(travel.omega_end_rad_s);
+        if was_rad_s == Some(travel.omega_start_rad_s) || travel.ticks != 1 {
+            return;
+        }
+        let threshold = &self.with.threshold;
+        let input_nm = |omega_rad_s| {
+            let travel = Travel {
+                omega_start_rad_s: omega_rad_s,
+                ..*travel
+            };
+            self.with.input(threshold.start_beyond(&travel)).1
+        };
+        // Nothing before the beginning.
+        let was_nm = was_rad_s.map_or(F::ZERO, input_nm);
+        let jump = Jump {
+            ago: 0,
+            at: self.share.from,
+            nm: input_nm(travel.omega_start_rad_s) - was_nm,
+        };
+        self.jumped = Some(jump);
+        self.keep(jump);
+    }
+
+    fn keep(&mut self, jump: Jump<F>) {
+        if let Some(free) = self.jumps.iter_mut().find(|other| other.nm == F::ZERO) {
+            *free = jump;
+        }
     }
 
     #[cold]
@@ -191,9 +307,21 @@ impl<F: Real> Reflex<F> {
     #[inline]
     fn answer(&mut self, nm: F) {
         self.remember(nm);
-        let delayed_nm = self.delayed();
+        let mut delayed_nm = self.delayed();
+        let mut sooner_nm = F::ZERO;
+        if !F::IS_SINGLE {
+            for jump in &mut self.jumps {
+                if jump.nm != F::ZERO {
+                    let (step_nm, gained_nm) = jump.passes(&self.with);
+                    delayed_nm += step_nm;
+                    sooner_nm += gained_nm;
+                    jump.ago = jump.ago.saturating_add(1);
+                }
+            }
+            self.share.from = F::ZERO;
+        }
         let with = &self.with;
-        let left_nm = self.lag_nm - with.lost * self.lag_nm;
+        let left_nm = self.lag_nm - with.lost * self.lag_nm + sooner_nm;
         self.lag_nm = (left_nm - with.mean * (delayed_nm - self.delayed_nm)).settled();
         self.delayed_nm = delayed_nm;
     }
