@@ -161,7 +161,7 @@ impl<F: Real> Law for LeadPipe<F> {
     #[cfg_attr(not(target_os = "none"), inline(never))]
     fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = &self.with;
-        self.elastic_nm = with.elastic * travel.end_beyond(&with.neutral);
+        self.elastic_nm = self.resting_nm(&travel.to);
         let limits = Limits::both(with.torque_nm);
         let part = Part::whole(F::ONE);
         self.play
@@ -171,6 +171,12 @@ impl<F: Real> Law for LeadPipe<F> {
 
     fn torque_nm(&self) -> F {
         self.play.torque_nm() + self.elastic_nm
+    }
+
+    #[inline]
+    fn resting_nm(&self, place: &Position<F>) -> F {
+        let with = &self.with;
+        with.elastic * place.beyond(&with.neutral, with.scale.rad_per_count)
     }
 
     fn adopt(&mut self, coefficients: LeadPipeCoefficients<F>, slew_nm: F) {

@@ -263,6 +263,11 @@ pub trait Law: Sized {
     /// Its torque now, N·m.
     fn torque_nm(&self) -> Self::Real;
 
+    /// Its torque on a joint that rests at a place, N·m: of most none.
+    fn resting_nm(&self, _place: &Position<Self::Real>) -> Self::Real {
+        Self::Real::ZERO
+    }
+
     /// Adopts these coefficients from now on; its torque goes on, and falls by at
     /// most `slew_nm` a tick to what they allow.
     fn adopt(&mut self, coefficients: Self::Coefficients, slew_nm: Self::Real);

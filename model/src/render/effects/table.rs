@@ -31,6 +31,14 @@ macro_rules! effects {
                 self.scale = Scale::new(&timing.sight, timing.step_s);
             }
 
+            /// Adds what the symptoms have on a joint that rests at a place.
+            pub fn add_resting(&self, place: &Position<F>, shown: &mut Shown<F>) {
+                $(if let Some(law) = &self.$symptom {
+                    shown.added.$symptom = law.resting_nm(place);
+                    shown.torque_nm += shown.added.$symptom;
+                })*
+            }
+
             /// Ends a part of a tick that began as `before`: what knows whole ticks only is as it
             /// was then. The tank takes a part for a tick.
             pub fn forget_part(&mut self, before: &Self) {

@@ -12,7 +12,7 @@ use crate::trace::{Column, ColumnKind, EventRecord, SymptomEvent};
 use crate::walk::Cut;
 use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::effects::EffectSpec;
-use crepitus_model::render::input_check::{Checked, Sample};
+use crepitus_model::render::input_check::Sample;
 use crepitus_model::render::{Bare, Seen, Shown};
 use crepitus_model::solver::locate::Locate;
 use crepitus_model::solver::{LocatorVisitor, Solver, with_frozen_locator};
@@ -313,7 +313,7 @@ fn first<F: Real>(
         place,
         is_driven: true,
     };
-    stages.add(&seen, &Checked::Missing(1), shown)
+    stages.begin(&seen, shown)
 }
 
 /// A device with a joint.

@@ -119,8 +119,12 @@ impl Retiming {
     }
 }
 
-/// A stage whose ticks can be of any length: one of a bare solver. The drive's never change.
-pub(super) trait InParts: Sized {
+/// A stage of a bare solver, whose ticks can be of any length, and which is there from the first row on. The
+/// drive's ticks never change, and it shows nothing before the first of them.
+pub(super) trait InParts<F>: Sized {
+    /// Adds its torque on a joint that rests at a place.
+    fn add_resting(&self, _place: &Position<F>, _shown: &mut Shown<F>) {}
+
     /// Goes on in ticks of another length.
     fn retime(&mut self, _to: &Retiming) {}
 
@@ -128,13 +132,13 @@ pub(super) trait InParts: Sized {
     fn forget_part(&mut self, _before: &Self) {}
 }
 
-impl InParts for () {}
+impl<F> InParts<F> for () {}
 
-impl<F: Real, L: Locate<F, Shape = Linear>> InParts for Crepitus<F, L> {}
+impl<F: Real, L: Locate<F, Shape = Linear>> InParts<F> for Crepitus<F, L> {}
 
-impl<F: Real> InParts for SwitchedEffects<F> {}
+impl<F: Real> InParts<F> for SwitchedEffects<F> {}
 
-impl<F: Real> InParts for Bare<AnyJoint<F>> {
+impl<F: Real> InParts<F> for Bare<AnyJoint<F>> {
     fn retime(&mut self, to: &Retiming) {
         let made = to
             .joint
@@ -146,7 +150,11 @@ impl<F: Real> InParts for Bare<AnyJoint<F>> {
     }
 }
 
-impl<F: Real> InParts for Effects<F> {
+impl<F: Real> InParts<F> for Effects<F> {
+    fn add_resting(&self, place: &Position<F>, shown: &mut Shown<F>) {
+        Self::add_resting(self, place, shown);
+    }
+
     fn retime(&mut self, to: &Retiming) {
         Self::retime(self, &to.effects, &to.timing, to.ratio);
     }
@@ -241,15 +249,15 @@ pub(super) trait Rendering<F> {
     /// See [`Addition::rest`].
     fn rest(&mut self, place: &Position<F>);
 
-    /// See [`Pipeline::add`].
-    fn add(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: Shown<F>) -> Shown<F>;
+    /// Output of a joint that is seen for the first time, which is no tick.
+    fn begin(&mut self, seen: &Seen<F>, shown: Shown<F>) -> Shown<F>;
 }
 
 impl<F: Real, I, S, E, L> Rendering<F> for Pipeline<F, I, S, E, L>
 where
     I: Check<F>,
-    S: Symptom<F> + InParts,
-    E: Addition<F> + InParts + Clone,
+    S: Symptom<F> + InParts<F>,
+    E: Addition<F> + InParts<F> + Clone,
     L: Asked<F>,
 {
     fn tick_part(
@@ -302,9 +310,10 @@ where
         self.effects.rest(place);
     }
 
-    #[inline]
-    fn add(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: Shown<F>) -> Shown<F> {
-        Self::add(self, seen, input, shown)
+    fn begin(&mut self, seen: &Seen<F>, shown: Shown<F>) -> Shown<F> {
+        let mut shown = self.add(seen, &Checked::Missing(1), shown);
+        self.effects.add_resting(&seen.place, &mut shown);
+        shown
     }
 }
 
