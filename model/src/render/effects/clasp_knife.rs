@@ -15,7 +15,7 @@
 //! Sources: all numbers are estimates; the collapse to a fifth takes 85 ms.
 
 use super::play::{Hold, Limits, Part, Play};
-use super::symptom::{Bounds, Change, ClinicWords, Hear, Law, Word, sense};
+use super::symptom::{Bounds, Change, ClinicWords, Hear, Law, Word, sense, way_back};
 use super::{EffectSpec, Owner, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -257,7 +257,7 @@ impl<F: Real> Law for ClaspKnife<F> {
             rate: F::from_f64(-timing.step_s / s.collapse_s),
             lost: F::from_f64(-libm::expm1(-timing.step_s / s.collapse_s)),
             stiffness: F::from_f64(s.catch_stiffness_nm_per_rad),
-            rearm_rad: F::from_f64(s.rearm_deg.to_radians()),
+            rearm_rad: way_back(s.rearm_deg),
         })
     }
 

@@ -15,7 +15,7 @@
 //! under load (Hidler & Rymer), the first beat the longest; the amplitude is an
 //! estimate.
 
-use super::symptom::{Bounds, Change, ClinicWords, Hear, Law, Word, sense};
+use super::symptom::{Bounds, Change, ClinicWords, Hear, Law, Word, sense, way_back};
 use super::{EffectSpec, Owner, PhaseSpec, Timing};
 use crate::joint::SettingsError;
 use crate::parameters::{Tabled, settings};
@@ -273,7 +273,7 @@ impl<F: Real> Law for Clonus<F> {
             scale: timing.scale()?,
             sense: sense(s.muscles),
             hold: timing.sight.position(s.hold_deg.to_radians()),
-            back_rad: F::from_f64(s.hysteresis_deg.to_radians()),
+            back_rad: way_back(s.hysteresis_deg),
             least_rad_s: F::from_f64(s.start_velocity_deg_s.to_radians()),
             amplitude_nm: F::from_f64(s.amplitude_nm),
             period: ticks(1.0 / s.frequency_hz),

@@ -17,6 +17,7 @@ mod ends;
 mod extremes;
 mod gaps;
 mod motions;
+mod off_grid;
 mod refusals;
 mod reversals;
 mod rounding;
@@ -131,6 +132,13 @@ pub fn all() -> Vec<Case> {
         actuator::held_loop(),
         actuator::free_loop(),
         tank_empty::tank_empty(),
+        off_grid::jump_within_a_step(),
+        off_grid::two_limits_in_a_tick(),
+        off_grid::clock_against_a_pause(),
+        off_grid::armed_beyond(),
+        off_grid::longer_than_a_pitch(),
+        off_grid::irregular_delay(),
+        off_grid::tremble_in_the_gap(),
     ]
 }
 

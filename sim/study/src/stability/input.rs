@@ -2,12 +2,14 @@
 
 mod actuator;
 mod device;
+mod scene;
 mod symptom;
 mod words;
 
 pub use actuator::{ActuatorLoop, ActuatorRun, Upset};
 pub use device::{Attempt, Change, Fault, Lost, Rendered, Shake};
-pub use symptom::{Pressed, RefusedSymptoms, SymptomRun};
+pub use scene::SceneRun;
+pub use symptom::{RefusedSymptoms, SymptomRun};
 
 use crepitus_plant::Motion;
 use crepitus_plant::motion::{Strokes, VelocityKnot};
@@ -145,8 +147,8 @@ pub enum Input {
     Rendered(Rendered),
     /// Symptoms besides crepitus, as the device renders them.
     Symptoms(SymptomRun),
-    /// A rotor that is pressed into a wall.
-    Pressed(Pressed),
+    /// A scene.
+    Scene(SceneRun),
     /// A device with the vibration actuator, on a leg in a hand.
     Actuator(ActuatorRun),
     /// The loop from the vibration actuator to the encoder and back, linear.
@@ -230,7 +232,7 @@ impl Input {
             | Self::Symptoms(SymptomRun {
                 duration_s, step_s, ..
             })
-            | Self::Pressed(Pressed {
+            | Self::Scene(SceneRun {
                 duration_s, step_s, ..
             })
             | Self::Actuator(ActuatorRun {
@@ -250,6 +252,7 @@ impl Input {
         match self {
             Self::Sampled { .. } => true,
             Self::Symptoms(run) => run.suits_the_reference(),
+            Self::Scene(run) => run.is_compared,
             _ => false,
         }
     }

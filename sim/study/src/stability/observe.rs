@@ -48,8 +48,8 @@ pub(super) fn observe(
     if let Input::SymptomRefusals(attempts) = input {
         return Ok(super::symptom::attempt(attempts));
     }
-    if let Input::Pressed(pressed) = input {
-        return Ok(super::pressed::observe(subject, pressed, late_s));
+    if let Input::Scene(run) = input {
+        return Ok(super::scene_run::observe(subject, run, late_s));
     }
     if let Input::Actuator(run) = input {
         return Ok(super::actuator::observe(subject, run, late_s));

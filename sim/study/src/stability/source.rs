@@ -34,7 +34,7 @@ pub(super) fn motion(input: &Input) -> Motion {
         Input::Symptoms(run) => run.hand.motion(),
         Input::White { .. }
         | Input::Hand { .. }
-        | Input::Pressed(_)
+        | Input::Scene(_)
         | Input::Actuator(_)
         | Input::ActuatorLoop(_)
         | Input::Refusals(_)
@@ -137,7 +137,7 @@ pub(super) fn source<'a, F: Real>(
         | Input::ShakingHand { .. }
         | Input::Rendered(_)
         | Input::Symptoms(_)
-        | Input::Pressed(_)
+        | Input::Scene(_)
         | Input::Actuator(_)
         | Input::ActuatorLoop(_)
         | Input::Refusals(_)

@@ -15,7 +15,7 @@ use crate::joint::SettingsError;
 use crate::real::Real;
 use crate::render::effects::Timing;
 use crate::render::effects::play::{Hold, Limits, Part, Play};
-use crate::render::effects::symptom::{Change, Hear, Word};
+use crate::render::effects::symptom::{Change, Hear, Word, way_back};
 use crate::render::position::{Position, Scale, Travel, decay, rise};
 
 /// Coefficients of [`Caught`].
@@ -52,7 +52,7 @@ impl<F: Real> CaughtCoefficients<F> {
             rate: F::from_f64(-timing.step_s / s.release_s),
             lost: F::from_f64(-libm::expm1(-timing.step_s / s.release_s)),
             stiffness: F::from_f64(s.catch_stiffness_nm_per_rad),
-            rearm_rad: F::from_f64(s.rearm_deg.to_radians()),
+            rearm_rad: way_back(s.rearm_deg),
         })
     }
 }

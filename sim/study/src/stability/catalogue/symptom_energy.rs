@@ -10,7 +10,7 @@ use crepitus_model::Settings;
 use crepitus_model::render::effects::{TANK_J, TANK_REFILL_W};
 
 /// The symptoms that are springs, each stiff and strong.
-fn springs() -> [Given; 6] {
+pub(super) fn springs() -> [Given; 6] {
     [
         Given::new(
             "range-limit",

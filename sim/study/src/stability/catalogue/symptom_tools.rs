@@ -41,6 +41,7 @@ pub(super) fn under(given: &Given, hand: Hand, duration_s: f64) -> SymptomRun {
         commits: Vec::new(),
         lost: Lost::NONE,
         delay_ticks: 0,
+        delay_varies: false,
         duration_s,
         step_s: TICK_S,
     }

@@ -6,7 +6,7 @@ use super::symptom_tools::{
 use super::tools::TICK_S;
 use crate::stability::case::{Case, Trial, located};
 use crate::stability::criterion::Criterion;
-use crate::stability::input::{Input, Pressed, SymptomRun};
+use crate::stability::input::{Input, SceneRun, SymptomRun};
 use crate::stability::subject::Rung;
 use crate::symptoms::{Given, Hand};
 use crepitus_model::Settings;
@@ -297,14 +297,7 @@ pub(super) fn pressed_rotor() -> Case {
             }
             vec![Trial {
                 settings: Settings::default(),
-                input: Input::Pressed(Pressed {
-                    stiffness_nm_per_rad: 300.0,
-                    loss: 0.25,
-                    friction_nm: 0.1,
-                    torque_nm: 2.0,
-                    duration_s: 2.0,
-                    step_s: TICK_S,
-                }),
+                input: Input::Scene(pressed()),
                 criteria: vec![
                     Criterion::TorqueQuiet {
                         from_s: 1.2,
@@ -318,5 +311,30 @@ pub(super) fn pressed_rotor() -> Case {
                 ],
             }]
         },
+    }
+}
+
+/// A rotor without a leg that is pressed into a flexion limit. What presses is a string so soft that it does not notice the
+/// wall.
+fn pressed() -> SceneRun {
+    SceneRun {
+        what: "a rotor with 0.1 N·m of friction, pressed by 2 N·m into an end of 300 N·m/rad with a loss of 0.25, \
+               with encoder, tick and current loop between them",
+        text: "device = true\n\
+               [motion]\nkind = \"velocity-knots\"\nfrom_deg = 89.0\nknots = [\n\
+               { t_s = 0.0, omega_rad_s = 0.0 },\n\
+               { t_s = 0.05, omega_rad_s = 2000.0 },\n\
+               { t_s = 0.1, omega_rad_s = 0.0 }]\n\
+               [effects.range-limit]\nextension_limit_deg = 0.0\nflexion_limit_deg = 90.0\n\
+               flexion_stiffness_nm_per_rad = 300.0\nflexion_stiffening_nm_per_rad2 = 0.0\nflexion_loss = 0.25\n\
+               [effects.encoder]\n[effects.motor]\n\
+               [effects.drivetrain]\nfriction_nm = 0.1\nload_loss = 0.0\n\
+               [effects.hand]\nmass_kg = 1e-3\ndamping_ns_per_m = 0.0\n\
+               stiffness_n_per_m = 0.02\nlever_m = 1.0\n"
+            .to_owned(),
+        column: "range_limit_nm",
+        is_compared: false,
+        duration_s: 2.0,
+        step_s: TICK_S,
     }
 }

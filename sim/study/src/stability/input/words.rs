@@ -122,7 +122,7 @@ impl fmt::Display for Input {
             Self::ShakingHand { shake, .. } => write!(f, "{shake}")?,
             Self::Rendered(rendered) => write!(f, "{rendered}")?,
             Self::Symptoms(run) => write!(f, "{run}")?,
-            Self::Pressed(pressed) => write!(f, "{pressed}")?,
+            Self::Scene(run) => write!(f, "{run}")?,
             Self::Actuator(run) => write!(f, "{run}")?,
             Self::ActuatorLoop(linear) => write!(f, "{linear}")?,
             Self::SymptomRefusals(attempts) => {

@@ -18,6 +18,7 @@ const NET_S: f64 = 2.0;
 pub(super) struct Energy {
     stiffness: f64,
     delay: usize,
+    varies: bool,
     /// The torques on their way, the latest first, N·m.
     late_nm: VecDeque<f64>,
     /// Work of the hand, and that with what sampling may generate, J.
@@ -39,6 +40,7 @@ impl Energy {
         Self {
             stiffness: stiffness_nm_per_rad,
             delay: run.delay_ticks,
+            varies: run.delay_varies,
             late_nm: VecDeque::from(vec![0.0; run.delay_ticks + 1]),
             work_j: 0.0,
             granted_j: 0.0,
@@ -54,7 +56,9 @@ impl Energy {
 
     /// A tick with the travel in it, and the torque at its end.
     pub(super) fn tick(&mut self, travel_rad: f64, torque_nm: f64) {
-        let acting_nm = self.late_nm.pop_back().unwrap_or(0.0);
+        let late = self.delay_of(self.tick);
+        let acting_nm = self.late_nm.get(late).copied().unwrap_or(0.0);
+        self.late_nm.pop_back();
         self.late_nm.push_front(torque_nm);
         self.largest_nm = self.largest_nm.max(torque_nm.abs());
         let ticks = 0.5 + f64::from(u32::try_from(self.delay).unwrap_or(u32::MAX));
@@ -78,6 +82,15 @@ impl Energy {
         if let Some((_, most_j)) = self.highest.front() {
             self.net_j = self.net_j.max(most_j - self.work_j);
         }
+    }
+
+    /// Delay of the torque in a tick, in ticks: of an irregular one as irregular as a hash.
+    fn delay_of(&self, tick: u64) -> usize {
+        if !self.varies {
+            return self.delay;
+        }
+        let mixed = tick.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 33;
+        usize::try_from(mixed).unwrap_or_default() % (self.delay + 1)
     }
 
     /// Largest returned energy, as a share of the energy of the springs at the largest torque.
@@ -113,6 +126,7 @@ mod tests {
             commits: Vec::new(),
             lost: Lost::NONE,
             delay_ticks,
+            delay_varies: false,
             duration_s: 1.0,
             step_s: 1.0,
         }
