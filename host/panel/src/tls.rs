@@ -4,10 +4,16 @@ use crate::panel::PanelError;
 use crate::pending::{Peer, Pending};
 use axum::Router;
 use axum_server::tls_rustls::{RustlsAcceptor, RustlsConfig};
-use rcgen::CertifiedKey;
+use rcgen::{CertificateParams, Error, KeyPair};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 use std::net::{IpAddr, TcpListener};
+use std::time::{Duration, SystemTime};
+
+const DAY: Duration = Duration::from_hours(24);
+
+/// Time for which it is valid: no panel runs longer.
+const VALID: Duration = Duration::from_hours(24 * 365);
 
 /// A key, and its certificate.
 pub(crate) struct Identity {
@@ -28,7 +34,7 @@ impl Identity {
             "localhost".to_owned(),
             "127.0.0.1".to_owned(),
         ];
-        let CertifiedKey { cert, signing_key } = rcgen::generate_simple_self_signed(names)
+        let (cert, signing_key) = signed(names)
             .map_err(|error| PanelError::System(format!("no certificate: {error}")))?;
         let certificate = cert.der().to_vec();
         let digest = Sha256::digest(&certificate);
@@ -46,6 +52,16 @@ impl Identity {
     }
 }
 
+/// A certificate that is valid from yesterday on, as clocks differ.
+fn signed(names: [String; 3]) -> Result<(rcgen::Certificate, KeyPair), Error> {
+    let now = SystemTime::now();
+    let mut parameters = CertificateParams::new(names)?;
+    parameters.not_before = (now - DAY).into();
+    parameters.not_after = (now + VALID).into();
+    let key = KeyPair::generate()?;
+    Ok((parameters.self_signed(&key)?, key))
+}
+
 /// Serves until the program ends.
 pub(crate) async fn serve(
     listener: TcpListener,
@@ -61,4 +77,26 @@ pub(crate) async fn serve(
         .acceptor(RustlsAcceptor::new(config).acceptor(pending))
         .serve(router.into_make_service_with_connect_info::<Peer>())
         .await
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_certificate_is_valid_for_a_year() {
+        let identity = Identity::new(IpAddr::from([192, 168, 0, 1])).unwrap();
+        // The two times of X.509: a tag, a length of 13, YYMMDDhhmmssZ.
+        let years: Vec<u64> = identity
+            .certificate
+            .windows(15)
+            .filter(|bytes| bytes.starts_with(&[0x17, 13]) && bytes.ends_with(b"Z"))
+            .map(|bytes| std::str::from_utf8(&bytes[2..4]).unwrap().parse().unwrap())
+            .collect();
+        let since_1970 = SystemTime::UNIX_EPOCH.elapsed().unwrap().as_secs();
+        let year = (since_1970 as f64 / (365.2425 * 86_400.0)) as u64 + 70 - 100;
+        assert_eq!(years.len(), 2, "{years:?}");
+        assert!((year - 1..=year).contains(&years[0]), "{years:?} {year}");
+        assert_eq!(years[1] - years[0], 1, "{years:?}");
+    }
 }

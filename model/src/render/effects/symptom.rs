@@ -372,8 +372,8 @@ pub(super) fn sense<F: Real>(muscles: u8) -> F {
 /// The way back after which a muscle is armed again, rad: one that is only just reached counts, and
 /// rounding of the place does not decide.
 pub(super) fn way_back<F: Real>(deg: f64) -> F {
-    const ROUNDINGS: f64 = 64.0;
-    F::from_f64(deg.to_radians() * (1.0 - ROUNDINGS * F::EPSILON.to_f64()))
+    const ROUNDINGS: f64 = 4.0;
+    F::from_f64(deg.to_radians() - ROUNDINGS * F::EPSILON.to_f64())
 }
 
 #[cfg(test)]
