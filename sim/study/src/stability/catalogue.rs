@@ -38,6 +38,7 @@ pub(super) use actuator::NOMINAL as ACTUATOR;
 pub(crate) use motions::WANDER;
 
 /// All cases.
+#[expect(clippy::too_many_lines, reason = "a list")]
 pub fn all() -> Vec<Case> {
     vec![
         steady::constant_speed(),
