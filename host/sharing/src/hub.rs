@@ -524,7 +524,7 @@ pub(crate) mod tests {
             let (folder, hub, sent) = sending(pause_ms, 600);
             let mut stream = &connect(&socket_in(&folder)).unwrap();
             stream.write_all(FRAME).unwrap();
-            thread::sleep(Duration::from_millis(1_000));
+            thread::sleep(Duration::from_secs(1));
             assert_eq!(hub.is_over(), !is_sent, "{pause_ms} ms");
             let sent = sent.lock().unwrap().clone();
             assert_eq!(sent.ends_with(FRAME), is_sent, "{pause_ms} ms: {sent:?}");
