@@ -2,13 +2,15 @@
 //
 //   node numbers.mjs                    ten seconds of each
 //   node numbers.mjs --minutes 30      and half an hour with 30 viewers, one of them stuck
+//   node numbers.mjs --slower 6        instead: 20 s armed, with a page whose thread is so many times slower
 
 import { readFileSync } from "node:fs";
 import { WebSocket } from "ws";
 import { arm, end, endAll, openControlling, startPanel, untilState } from "./harness.mjs";
 
-const at = process.argv.indexOf("--minutes");
-const minutes = at < 0 ? 0 : Number(process.argv[at + 1]);
+const option = (name) => Number(process.argv[process.argv.indexOf(name) + 1] ?? 0) || 0;
+const minutes = option("--minutes");
+const slower = option("--slower");
 
 const cpu = (pid) => {
   const fields = readFileSync(`/proc/${pid}/stat`, "utf8").split(") ")[1].split(" ");
@@ -56,6 +58,44 @@ async function screen() {
     panel_and_device_cpu_percent: round(((cpu(panel.child.pid) - before) / seconds) * 100),
     panel_memory_mb: round(memory(panel.child.pid)),
   };
+}
+
+/** How often torque ends on a slow computer, the longest time between two answers, and tasks above 50 ms. */
+async function onSlowComputer() {
+  const cdp = await page.context().newCDPSession(page);
+  await page.evaluate(() => {
+    const found = (window.found = { ends: 0, gap_ms: 0, tasks: [] });
+    const { send } = WebSocket.prototype;
+    let before = Infinity;
+    WebSocket.prototype.send = function (data) {
+      if (data.startsWith('{"seen"')) {
+        found.gap_ms = Math.max(found.gap_ms, performance.now() - before);
+        before = performance.now();
+      }
+      send.call(this, data);
+    };
+    const state = document.getElementById("state");
+    new MutationObserver(() => {
+      if (state.dataset.state !== "disarmed") return;
+      found.ends++;
+      document.getElementById("arm").click();
+    }).observe(state, { attributeFilter: ["data-state"] });
+    const tasks = (list) => found.tasks.push(...list.getEntries().map(({ duration }) => duration));
+    new PerformanceObserver(tasks).observe({ type: "longtask" });
+  });
+  await cdp.send("Emulation.setCPUThrottlingRate", { rate: slower });
+  await page.evaluate(() => Object.assign(window.crepitusStats, { draws: [] }));
+  await pause(20_000);
+  const { ends, gap_ms, tasks } = await page.evaluate(() => window.found);
+  const pictures = await page.evaluate(() => window.crepitusStats.draws.length);
+  const load = Number(readFileSync("/proc/loadavg", "utf8").split(" ")[0]);
+  return { ends, gap_ms: round(gap_ms), tasks: tasks.length, longest_ms: Math.max(0, ...tasks), pictures, load };
+}
+
+if (slower) {
+  console.log(`20 s armed, ${slower} times slower`, JSON.stringify(await onSlowComputer()));
+  await endAll();
+  process.exit();
 }
 
 console.log("one page", JSON.stringify(await screen(), null, 1));

@@ -108,6 +108,32 @@ test("torque ends when the controlling page closes, reloads or hangs", async () 
   }
 });
 
+test("pictures that take too long cost pictures, not the torque", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  // 220 ms for a picture of four curves. Only curves are paths.
+  await page.evaluate(() => {
+    const { prototype } = CanvasRenderingContext2D;
+    const { stroke } = prototype;
+    prototype.stroke = function (...path) {
+      const last = performance.now() + (path.length ? 55 : 0);
+      while (performance.now() < last);
+      stroke.apply(this, path);
+    };
+  });
+  let kept = false;
+  for (let attempt = 0; attempt < 3 && !kept; attempt++) {
+    // The page has to notice that it is late.
+    await page.waitForTimeout(1000);
+    await page.locator("#arm").click();
+    await page.waitForTimeout(3000);
+    kept = (await page.locator("#state").getAttribute("data-state")) === "armed";
+  }
+  assert.ok(kept, await page.locator("#torque-end").textContent());
+  const drawn = await page.evaluate(() => window.crepitusStats.draws.length);
+  await until(page, "further pictures", (before) => window.crepitusStats.draws.length > before + 3, drawn);
+});
+
 test("a hidden tab keeps control: it still answers", async () => {
   const panel = await startPanel();
   const page = await openControlling(panel.teacher);

@@ -185,8 +185,8 @@ export class Charts {
     this.draw(this.view.from, this.view.to);
   }
 
-  /** Draws a range of time; done after the next microtask. */
-  draw(from, to) {
+  /** Draws a range of time, in all panes or in the nth, counted round; done after the next microtask. */
+  draw(from, to, nth = null) {
     if (!(to > from) || !this.host.clientWidth) return;
     this.view = { from, to };
     for (const layer of this.layers) {
@@ -196,7 +196,8 @@ export class Charts {
       layer.from = Math.max(begin, indexAt(columns.t, begin, end, from - offset) - 1);
       layer.to = Math.min(end, indexAt(columns.t, begin, end, to - offset) + 1);
     }
-    for (const pane of this.panes) {
+    const panes = nth === null ? this.panes : [this.panes[nth % this.panes.length]];
+    for (const pane of panes) {
       setHidden(pane.masked, !(pane.name === "torque" && this.masked.torque));
       this.rangeOf(pane);
       pane.plot.batch(() => {

@@ -5,6 +5,7 @@ import { RecentBins } from "./bins.js";
 import { Charts, colours } from "./charts.js";
 import { isReplay, latest, on } from "./connection.js";
 import { byId, el, setText, tick } from "./dom.js";
+import { latenessOf } from "./lateness.js";
 import { makeLeg } from "./leg.js";
 import { shadeName, shadesIn, shadesOf } from "./states.js";
 import { store, stored } from "./storage.js";
@@ -15,6 +16,11 @@ const BINS_A_SECOND = 200;
 const KEPT = 2000;
 // Numbers that are older than this are not shown: they would be taken for what is now.
 const STALE_AFTER_MS = 400;
+// Torque ends when this page answers 200 ms late, and pictures are most of its work. So a page that is late draws
+// when it has caught up, or at last after DRAW_AFTER_MS; and one chart at a time, until it was not late for a while.
+const LATE_MS = 40;
+const DRAW_AFTER_MS = 400;
+const CAREFUL_MS = 10_000;
 
 const stats = { frames: 0, bins: 0, paints: 0, missing: 0, first: null, latencies: [], draws: [] };
 window.crepitusStats = stats;
@@ -24,6 +30,10 @@ let charts = null;
 let turnLeg = null;
 let seconds = 10;
 let dirty = false;
+let lateMs = 0;
+let lateAt = -Infinity;
+let drawnAt = -Infinity;
+let nextPane = 0;
 let wordsAt = 0;
 let binsAt = 0;
 let isStale = true;
@@ -117,18 +127,21 @@ function paint(now) {
   const noBins = performance.now() - binsAt > STALE_AFTER_MS || latest.status?.link === "lost";
   if (noBins !== isStale) {
     isStale = noBins;
+    lateMs = 0;
     byId("live").classList.toggle("stale", isStale);
     wordsAt = 0;
     dirty = true;
   }
-  if (!dirty || isReplay()) return;
-  dirty = false;
   const began = performance.now();
+  if (!dirty || isReplay() || (lateMs > LATE_MS && began - drawnAt < DRAW_AFTER_MS)) return;
+  dirty = false;
+  drawnAt = began;
   const { columns, begin, end } = bins;
   if (end > begin) {
     const to = columns.t[end - 1] + bins.length / 2;
     charts.masked = bins.masked;
-    charts.draw(to - seconds, to);
+    if (began - lateAt < CAREFUL_MS) charts.draw(to - seconds, to, nextPane++);
+    else charts.draw(to - seconds, to);
     turnLeg(isStale ? NaN : middle(columns.angleLow[end - 1], columns.angleHigh[end - 1]));
   }
   showWords(now);
@@ -205,6 +218,8 @@ export function startLive() {
   offerWindows();
   on("frame", (view) => {
     const { count, missing } = bins.push(view);
+    lateMs = latenessOf(view.getFloat64(8, true));
+    if (lateMs > LATE_MS) lateAt = performance.now();
     stats.frames++;
     stats.bins += count;
     if (count > 0) binsAt = performance.now();

@@ -12,11 +12,16 @@ import { startStrings } from "./strings.js";
 import { setReplay, startTabs } from "./tabs.js";
 import { startTarget } from "./target.js";
 
-// What is scrolled to must not end up below the header, which stays in sight.
-const top = document.querySelector(".top");
-new ResizeObserver(() => {
-  document.documentElement.style.setProperty("--top", `${Math.ceil(top.getBoundingClientRect().height)}px`);
-}).observe(top);
+// What is scrolled to must not end up below the part of the header that stays in sight.
+const headers = [".top", ".bar"].map((part) => document.querySelector(part));
+const measure = () => {
+  const header = headers.find((part) => getComputedStyle(part).position === "sticky");
+  const height = Math.ceil(header?.getBoundingClientRect().height ?? 0);
+  document.documentElement.style.setProperty("--top", `${height}px`);
+};
+const resized = new ResizeObserver(measure);
+for (const part of headers) resized.observe(part);
+addEventListener("resize", measure);
 
 await startStrings(byId("language"));
 startTabs();

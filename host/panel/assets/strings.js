@@ -19,14 +19,24 @@ export function text(key, values = {}) {
 /** Returns the text of a key, or else a text that the server sent. */
 export const textOr = (key, fallback) => chosen[key] ?? english[key] ?? fallback;
 
+// To make one takes longer than all the rest of a number's text.
+const formats = new Map();
+function format(digits) {
+  const key = `${language} ${digits}`;
+  if (!formats.has(key)) {
+    const options = { minimumFractionDigits: digits, maximumFractionDigits: digits };
+    formats.set(key, new Intl.NumberFormat(language, options));
+  }
+  return formats.get(key);
+}
+
 /** A number as this language writes it. */
 export function number(value, digits = 0) {
   if (!Number.isFinite(value)) return "–";
   const scale = 10 ** digits;
   // No "−0.00".
   const rounded = Math.round(value * scale) / scale || 0;
-  const options = { minimumFractionDigits: digits, maximumFractionDigits: digits };
-  return rounded.toLocaleString(language, options).replace("-", "−");
+  return format(digits).format(rounded).replace("-", "−");
 }
 
 /** A value of any size, with six significant digits at most. */

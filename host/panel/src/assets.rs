@@ -34,6 +34,7 @@ assets![
     SCRIPT "dom.js",
     SCRIPT "drawer.js",
     SCRIPT "knee.js",
+    SCRIPT "lateness.js",
     SCRIPT "leg.js",
     SCRIPT "lesson-results.js",
     SCRIPT "lesson-run.js",

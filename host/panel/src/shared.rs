@@ -18,6 +18,7 @@ use axum::body::Bytes;
 use axum::extract::ws::Utf8Bytes;
 use serde_json::Value;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, mpsc};
 use std::time::Instant;
 use tokio::sync::{broadcast, oneshot, watch};
@@ -33,6 +34,8 @@ pub(crate) struct Order {
     pub(crate) page: Page,
     pub(crate) role: Role,
     pub(crate) queued_at: Instant,
+    /// Number of stops that were queued before it.
+    pub(crate) stops: u64,
     pub(crate) reply: oneshot::Sender<Outcome>,
 }
 
@@ -70,6 +73,8 @@ pub(crate) struct Shared {
     pub(crate) latest: watch::Sender<Latest>,
     pub(crate) watchdog: PageWatchdog,
     pub(crate) control: Control,
+    /// Number of stops that pages have queued.
+    pub(crate) stops: AtomicU64,
     pub(crate) tokens: Tokens,
     pub(crate) tickets: Tickets,
     /// Connections without a token.
@@ -94,6 +99,7 @@ impl Shared {
             latest: watch::channel(Latest::default()).0,
             watchdog: PageWatchdog::new(),
             control: Control::new(),
+            stops: AtomicU64::new(0),
             tokens,
             tickets: Tickets::default(),
             pending: Pending::default(),
@@ -115,12 +121,17 @@ impl Shared {
             // At once: what the page before still orders is rejected from now on.
             self.control.withdraw_for(page);
         }
+        if request == Request::Stop {
+            // At once, too: an order to arm that still waits is rejected.
+            self.stops.fetch_add(1, Ordering::Relaxed);
+        }
         let (reply, outcome) = oneshot::channel();
         let order = Order {
             request,
             page,
             role,
             queued_at: Instant::now(),
+            stops: self.stops.load(Ordering::Relaxed),
             reply,
         };
         self.orders.send(order).map_err(|_| gone())?;

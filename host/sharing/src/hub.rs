@@ -37,7 +37,7 @@ const SOON: Duration = Duration::from_millis(1);
 /// The longest pause of the thread that receives. After a longer one this program was stopped,
 /// and what has waited for it meanwhile is too old to be sent: those who have sent it know
 /// no longer of it. Less than the timeout of a request.
-const STOPPED_MS: u64 = 400;
+pub(crate) const STOPPED_MS: u64 = 400;
 
 /// Frames on their way to the port.
 const QUEUE: usize = 64;
@@ -173,6 +173,8 @@ impl State {
                 Err(_) => return self.end(),
             }
             sent = match queue.recv_timeout(LOOK_EVERY) {
+                // It has waited for this program to go on.
+                Ok(_) if self.was_stopped() => return self.end(),
                 Ok(frame) => port.send(&frame),
                 Err(RecvTimeoutError::Timeout) => Ok(()),
                 Err(RecvTimeoutError::Disconnected) => return,
@@ -358,7 +360,7 @@ fn write_all(mut stream: &Stream, inbox: &Receiver<Chunk>) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::link::Link;
     use crate::note::Program;
@@ -370,15 +372,17 @@ mod tests {
     use std::path::{Path, PathBuf};
     use std::sync::mpsc::channel;
 
-    /// A port that keeps the thread that receives for a while, as a signal would keep all.
+    /// A port that keeps the threads for a while, as a signal would.
     struct Pausing {
         pause: Duration,
+        send_pause: Duration,
         sent: Arc<Mutex<Vec<u8>>>,
     }
 
     impl Transport for Pausing {
         fn send(&mut self, bytes: &[u8]) -> Result<(), TransportError> {
             self.sent.lock().unwrap().extend(bytes);
+            thread::sleep(self.send_pause);
             Ok(())
         }
 
@@ -404,16 +408,35 @@ mod tests {
 
     /// A hub with a port of that pause, and what it sends there.
     fn served(pause_ms: u64) -> (tempfile::TempDir, Hub, Arc<Mutex<Vec<u8>>>) {
+        sending(pause_ms, 0)
+    }
+
+    fn sending(pause_ms: u64, send_ms: u64) -> (tempfile::TempDir, Hub, Arc<Mutex<Vec<u8>>>) {
         let folder = tempfile::tempdir().unwrap();
         let place = Place::in_folder(folder.path(), "knee");
-        let held = Held::at(&place, place.lock().unwrap().unwrap()).unwrap();
+        let (hub, sent) = start(&place, place.lock().unwrap().unwrap(), [pause_ms, send_ms]);
+        (folder, hub, sent)
+    }
+
+    /// A hub at this place, and what it sends to its port.
+    pub(crate) fn served_at(place: &Place, lock: File) -> (Hub, Arc<Mutex<Vec<u8>>>) {
+        start(place, lock, [1, 0])
+    }
+
+    fn start(
+        place: &Place,
+        lock: File,
+        [pause, send_pause]: [u64; 2],
+    ) -> (Hub, Arc<Mutex<Vec<u8>>>) {
+        let held = Held::at(place, lock).unwrap();
         let sent = Arc::new(Mutex::new(Vec::new()));
         let port = || Pausing {
-            pause: Duration::from_millis(pause_ms),
+            pause: Duration::from_millis(pause),
+            send_pause: Duration::from_millis(send_pause),
             sent: sent.clone(),
         };
         let hub = Hub::start((port(), port()), held);
-        (folder, hub, sent)
+        (hub, sent)
     }
 
     fn socket_in(folder: &tempfile::TempDir) -> PathBuf {
@@ -486,6 +509,22 @@ mod tests {
             thread::sleep(Duration::from_millis(600));
             stream.write_all(FRAME).unwrap();
             thread::sleep(Duration::from_millis(600));
+            assert_eq!(hub.is_over(), !is_sent, "{pause_ms} ms");
+            let sent = sent.lock().unwrap().clone();
+            assert_eq!(sent.ends_with(FRAME), is_sent, "{pause_ms} ms: {sent:?}");
+        }
+    }
+
+    /// The same of frames that the hub had taken before it was stopped.
+    #[test]
+    fn what_has_waited_in_the_queue_of_a_program_that_was_stopped_is_not_sent() {
+        const FRAME: &[u8] = b"\x03ab\0";
+        for (pause_ms, is_sent) in [(10, true), (1_500, false)] {
+            // The first bytes of the hub take the thread that sends for 600 ms.
+            let (folder, hub, sent) = sending(pause_ms, 600);
+            let mut stream = &connect(&socket_in(&folder)).unwrap();
+            stream.write_all(FRAME).unwrap();
+            thread::sleep(Duration::from_secs(1));
             assert_eq!(hub.is_over(), !is_sent, "{pause_ms} ms");
             let sent = sent.lock().unwrap().clone();
             assert_eq!(sent.ends_with(FRAME), is_sent, "{pause_ms} ms: {sent:?}");

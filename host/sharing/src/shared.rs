@@ -2,7 +2,7 @@
 
 use crate::frames::Frames;
 use crate::held::Held;
-use crate::hub::Hub;
+use crate::hub::{Hub, STOPPED_MS};
 use crate::left_open::{LeftOpen, requests_in};
 use crate::link::Link;
 use crate::note::{Note, Program};
@@ -10,6 +10,7 @@ use crate::place::Place;
 use crate::socket::connect;
 use crepitus_client::discovery::{self, PseudoTerminal, pseudo_terminal};
 use crepitus_client::{Serial, Transport, TransportError};
+use crepitus_protocol::host::{Operation, Request};
 use std::io::{self, ErrorKind};
 use std::path::Path;
 use std::thread;
@@ -18,6 +19,9 @@ use std::time::{Duration, Instant};
 /// Time for which programs try to connect to each other: one of them may just be
 /// opening or closing the port, which takes seconds on a computer that is busy.
 const ATTACH: Duration = Duration::from_secs(10);
+
+/// The longest time that a request may wait for a program to serve it, as in a hub that was stopped.
+const STALE: Duration = Duration::from_millis(STOPPED_MS);
 
 /// Interval of the tries.
 const TRY_EVERY: Duration = Duration::from_millis(3);
@@ -230,8 +234,14 @@ impl Transport for Shared {
                 open.requests(&request);
             }
         });
+        let began = Instant::now();
         for _ in 0..2 {
             let link = self.link.as_mut().ok_or_else(|| lost(&self.port))?;
+            let patience = began.elapsed();
+            if patience > STALE && requests_in(bytes).iter().any(expires) {
+                let port = self.port.clone();
+                return Err(TransportError::Stalled { port, patience });
+            }
             if link.send(bytes).is_ok() {
                 return Ok(());
             }
@@ -281,6 +291,15 @@ impl Transport for Shared {
     }
 }
 
+/// Returns whether a request must not be executed long after it was made: whoever has made it knows
+/// no longer of it. What ends torque or a subscription is never too late.
+fn expires(request: &Request) -> bool {
+    !matches!(
+        request.operation,
+        Operation::Disarm | Operation::Unsubscribe
+    )
+}
+
 fn is_timeout(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock)
 }
@@ -302,6 +321,65 @@ fn lost(port: &str) -> TransportError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hub::tests::served_at;
+    use crate::socket::{Listener, arrival};
+    use crepitus_protocol::{Lane, Nonce, Session, frame};
+    use std::io::Write;
+
+    fn request(operation: Operation) -> frame::Frame {
+        let request = Request {
+            session: Session(7),
+            nonce: Nonce(9),
+            number: 1,
+            operation,
+        };
+        frame::encode(Lane::Request, &request).unwrap()
+    }
+
+    /// While nobody serves, a person turns away: what they asked for is not carried out when another
+    /// program serves at last, but for what ends torque.
+    #[test]
+    fn a_request_that_waited_for_a_handover_is_not_sent() {
+        for (operation, wait_ms, is_sent) in [
+            (Operation::Arm, 0, true),
+            (Operation::Arm, 800, false),
+            (Operation::Disarm, 800, true),
+        ] {
+            let port = format!("/dev/crepitus-late-{}-{wait_ms}", std::process::id());
+            let place = Place::of(&port).unwrap();
+            let lock = place.lock().unwrap().unwrap();
+            let listener = Listener::at(&place.socket).unwrap();
+            let mut shared = thread::scope(|scope| {
+                let killed = scope.spawn(|| {
+                    let mut stream = arrival(|| listener.accept()).enter().unwrap();
+                    stream.write_all(&Note::Welcome.frame().unwrap()).unwrap();
+                    stream
+                });
+                let shared = Shared::open(&port, "a test").unwrap();
+                drop(killed.join().unwrap());
+                shared
+            });
+            drop(listener);
+            let next_place = place.clone();
+            let next = thread::spawn(move || {
+                thread::sleep(Duration::from_millis(wait_ms));
+                served_at(&next_place, lock)
+            });
+            let result = shared.send(&request(operation));
+            let (hub, sent) = next.join().unwrap();
+            thread::sleep(Duration::from_millis(50));
+            let found = requests_in(&sent.lock().unwrap());
+            assert_eq!(
+                found.len(),
+                usize::from(is_sent),
+                "{operation:?} {wait_ms}: {result:?}"
+            );
+            let is_stalled = matches!(result, Err(TransportError::Stalled { .. }));
+            assert_eq!(is_stalled, !is_sent, "{operation:?} {wait_ms}: {result:?}");
+            drop((shared, hub));
+            std::fs::remove_file(place.socket.with_extension("lock")).unwrap();
+        }
+    }
 
     #[test]
     fn a_program_that_is_slow_to_let_go_of_the_port_is_waited_for() {

@@ -7,6 +7,8 @@ use crate::request::{Request, Right};
 use crate::shared::{Order, Outcome};
 use crepitus_client::{Client, Transport};
 use serde_json::Value;
+use std::collections::VecDeque;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 /// Longest time in the queue of an order that [expires](Request::expires): the device keeps this
@@ -14,9 +16,15 @@ use std::time::Duration;
 const LONGEST_QUEUED: Duration = Duration::from_secs(5);
 
 impl<T: Transport> Keeper<'_, T> {
-    /// Executes what pages have ordered.
+    /// Executes what pages have ordered: a stop first, also one that comes meanwhile.
     pub(super) fn take_orders(&mut self) {
-        while let Ok(order) = self.inbox.try_recv() {
+        let mut waiting = VecDeque::new();
+        loop {
+            waiting.extend(self.inbox.try_iter());
+            let stop = (waiting.iter()).position(|order: &Order| order.request == Request::Stop);
+            let Some(order) = waiting.remove(stop.unwrap_or(0)) else {
+                return;
+            };
             let outcome = self.check(&order).and_then(|()| {
                 let Order { page, role, .. } = order;
                 match order.request {
@@ -39,12 +47,17 @@ impl<T: Transport> Keeper<'_, T> {
         }
     }
 
-    /// Rejects an order of a page that has lost control since it was queued, and one that has
-    /// waited for too long.
+    /// Rejects an order of a page that has lost control since it was queued, one to arm from before
+    /// a stop, and one that has waited for too long.
     fn check(&self, order: &Order) -> Result<(), String> {
         let Order { request, page, .. } = order;
         if request.right() == Right::Control && !self.shared.control.is_held_by(*page) {
             return Err("another page has control: take control first".to_owned());
+        }
+        if *request == Request::Arm && order.stops != self.shared.stops.load(Ordering::Relaxed) {
+            return Err(
+                "STOP was pressed meanwhile: look at the device, then arm again".to_owned(),
+            );
         }
         let waited = order.queued_at.elapsed();
         if request.expires() && waited > LONGEST_QUEUED {

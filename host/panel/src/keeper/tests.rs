@@ -299,3 +299,29 @@ fn an_end_of_torque_says_who_ended_it() {
         assert!(!keeper.client.is_armed());
     }
 }
+
+/// STOP is pressed while the device keeps the keeper busy, and other orders wait.
+#[test]
+fn a_stop_goes_before_what_waits_and_nothing_from_before_it_arms() {
+    let program = Alone::default();
+    let mut keeper = keeper(&program);
+    let shared = keeper.shared.clone();
+    let [page, viewer] = [shared.control.page(), shared.control.page()];
+    keeper.client.zero().expect("a zero");
+    done(&mut keeper, page, FromPage::Take).expect("control");
+    let stop = || drop(shared.order(FromPage::Stop, viewer, Role::Viewer));
+    let mut armed = order(&shared, page, FromPage::Arm);
+    stop();
+    keeper.take_orders();
+    let outcome = armed.try_recv().expect("an outcome");
+    assert!(outcome.unwrap_err().contains("STOP was pressed"));
+    assert!(!keeper.client.is_armed());
+    // After a stop a person may arm again.
+    done(&mut keeper, page, FromPage::Arm).expect("torque");
+    // With torque the zero would be refused.
+    let mut zeroed = order(&shared, page, FromPage::Zero);
+    stop();
+    keeper.take_orders();
+    assert_eq!(zeroed.try_recv(), Ok(Ok(Value::Null)));
+    assert!(!keeper.client.is_armed());
+}
