@@ -33,8 +33,9 @@ fn farthest(points: &[(f64, f64)], (from, to): (usize, usize), tolerance: f64) -
     let length2 = dx * dx + dy * dy;
     let mut worst = tolerance * tolerance;
     let mut at = None;
-    for i in from + 1..to {
-        let (px, py) = (points[i].0 - start.0, points[i].1 - start.1);
+    let between = points.get(from + 1..to).unwrap_or_default();
+    for (i, point) in (from + 1..).zip(between) {
+        let (px, py) = (point.0 - start.0, point.1 - start.1);
         let along = if length2 > 0.0 {
             ((px * dx + py * dy) / length2).clamp(0.0, 1.0)
         } else {
