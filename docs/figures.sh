@@ -3,7 +3,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 figure() { # SCENE CHART PICTURE
-    cargo run --profile dist --features emulator --quiet -- run "$1" --pictures --out "target/figures/$1" >/dev/null
+    cargo run --profile dist --features emulator --quiet -- run "$1" --set output.trace_step_s=5e-5 --pictures --out "target/figures/$1" >/dev/null
     cp "target/figures/$1/$2.svg" "docs/images/$3.svg"
     echo "docs/images/$3.svg"
 }

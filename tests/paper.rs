@@ -88,7 +88,7 @@ fn bench(run: &Path, file: &Path, torque_off_nm: f64) {
     let number = |row: &[String], at: usize| row[at].parse::<f64>().unwrap();
     let lines: Vec<String> = rows
         .iter()
-        .step_by(50)
+        .step_by(5)
         .map(|row| {
             format!(
                 "{},{},{}",
@@ -242,7 +242,7 @@ fn an_overlay_is_read_as_its_file_says() {
     let number = |row: &[String], at: usize| row[at].parse::<f64>().unwrap();
     let mut text =
         String::from("Coordinates\ninDegrees=yes\nendheader\ntime\tknee\tT, N·m\tT\tT\n");
-    for row in rows.iter().step_by(200) {
+    for row in rows.iter().step_by(20) {
         let (t, deg) = (1.0 + number(row, time), number(row, angle).to_degrees());
         let nm = number(row, torque);
         writeln!(text, "{t}\t{deg}\t{nm}\t{nm}\t{nm}").unwrap();

@@ -25,7 +25,7 @@ mod owned;
 
 pub use claim::Claim;
 pub use error::{InTheWay, OutputError, Reason};
-pub use folder::{Folder, check_folder};
+pub use folder::{Folder, Part, check_folder};
 pub use inputs::Inputs;
 pub use marker::MARKER;
 pub use new_file::{NewFile, is_stdout};

@@ -12,12 +12,7 @@ pub fn simplify(points: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
     keep[end] = true;
     let mut ranges = vec![(0, end)];
     while let Some((from, to)) = ranges.pop() {
-        let worst = (from + 1..to)
-            .map(|i| (i, distance(points[i], points[from], points[to])))
-            .max_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((i, miss)) = worst
-            && miss > tolerance
-        {
+        if let Some(i) = farthest(points, (from, to), tolerance) {
             keep[i] = true;
             ranges.push((from, i));
             ranges.push((i, to));
@@ -30,18 +25,30 @@ pub fn simplify(points: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Distance of a point from the stretch between two others.
-fn distance(point: (f64, f64), from: (f64, f64), to: (f64, f64)) -> f64 {
-    let vector = |a: (f64, f64), b: (f64, f64)| (b.0 - a.0, b.1 - a.1);
-    let (dx, dy) = vector(from, to);
-    let (px, py) = vector(from, point);
+/// The point between two others that is farthest from the stretch between them, if that is more than `tolerance`.
+// A report's lines pass through here several times: one loop, in squares.
+fn farthest(points: &[(f64, f64)], (from, to): (usize, usize), tolerance: f64) -> Option<usize> {
+    let (start, end) = (points[from], points[to]);
+    let (dx, dy) = (end.0 - start.0, end.1 - start.1);
     let length2 = dx * dx + dy * dy;
-    let along = if length2 > 0.0 {
-        ((px * dx + py * dy) / length2).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    (px - along * dx).hypot(py - along * dy)
+    let mut worst = tolerance * tolerance;
+    let mut at = None;
+    let between = points.get(from + 1..to).unwrap_or_default();
+    for (i, point) in (from + 1..).zip(between) {
+        let (px, py) = (point.0 - start.0, point.1 - start.1);
+        let along = if length2 > 0.0 {
+            ((px * dx + py * dy) / length2).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let (x, y) = (px - along * dx, py - along * dy);
+        let miss2 = x * x + y * y;
+        if miss2 > worst {
+            worst = miss2;
+            at = Some(i);
+        }
+    }
+    at
 }
 
 #[cfg(test)]

@@ -214,7 +214,7 @@ fn fill(folder: &Folder, out: &Path, files: Files) -> Result<(), Failure> {
             .file(&name)
             .and_then(|mut file| {
                 file.write_all(&content)?;
-                Folder::finish(file)
+                folder.finish(file)
             })
             .map_err(|e| Failure::at(out, "writing the results", &e))?;
     }

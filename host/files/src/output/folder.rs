@@ -3,11 +3,14 @@
 use super::marker::{Marker, is_plain};
 use super::owned::failed;
 use super::{
-    Claim, Hashed, MARKER, OutputError, OwnedFolder, TEMPORARY, folder_of, is_stdout, lock_folder,
-    sha256,
+    Claim, Hashed, MARKER, OutputError, OwnedFolder, TEMPORARY, folder_of, hex, is_stdout,
+    lock_folder, sha256,
 };
+use sha2::{Digest, Sha256};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, BufWriter};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{TempDir, TempPath};
 
@@ -20,6 +23,28 @@ pub struct Folder {
     /// Temporary folder, which is only this user's, as such folders are; `files` inside is as any other.
     _parts: TempDir,
     files: PathBuf,
+    /// SHA-256 of each file that is finished.
+    finished: RefCell<BTreeMap<String, String>>,
+}
+
+/// New file of a [`Folder`], hashed while it is written: a long one is not read again.
+#[derive(Debug)]
+pub struct Part {
+    name: String,
+    file: File,
+    sha: Sha256,
+}
+
+impl Write for Part {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.file.write(bytes)?;
+        self.sha.update(bytes.get(..count).unwrap_or_default());
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
 }
 
 impl Folder {
@@ -50,6 +75,7 @@ impl Folder {
             claim,
             _parts: parts,
             files,
+            finished: RefCell::default(),
         })
     }
 
@@ -57,14 +83,17 @@ impl Folder {
     ///
     /// # Errors
     /// If it cannot be created.
-    pub fn file(&self, name: &str) -> io::Result<BufWriter<File>> {
+    pub fn file(&self, name: &str) -> io::Result<BufWriter<Part>> {
         if !is_plain(name) {
             return Err(io::ErrorKind::InvalidFilename.into());
         }
-        Ok(BufWriter::with_capacity(
-            1 << 16,
-            File::create(self.path_of(Path::new(name)))?,
-        ))
+        self.finished.borrow_mut().remove(name);
+        let part = Part {
+            name: name.to_owned(),
+            file: File::create(self.path_of(Path::new(name)))?,
+            sha: Sha256::new(),
+        };
+        Ok(BufWriter::with_capacity(1 << 16, part))
     }
 
     /// Path to which a file of this name is written, for a caller that creates its files itself.
@@ -77,9 +106,20 @@ impl Folder {
     ///
     /// # Errors
     /// If the disk does not take it all.
-    pub fn finish(file: BufWriter<File>) -> io::Result<()> {
-        let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
-        file.sync_all()
+    pub fn finish(&self, file: BufWriter<Part>) -> io::Result<()> {
+        let part = file.into_inner().map_err(io::IntoInnerError::into_error)?;
+        part.file.sync_all()?;
+        let sha256 = hex(&part.sha.finalize());
+        self.finished.borrow_mut().insert(part.name, sha256);
+        Ok(())
+    }
+
+    /// SHA-256 of a file, which is complete.
+    fn sha256_of(&self, name: &str, path: &Path) -> io::Result<String> {
+        match self.finished.borrow().get(name) {
+            Some(sha256) => Ok(sha256.clone()),
+            None => sha256(File::open(path)?),
+        }
     }
 
     /// Moves the whole folder into place if nothing is there, or an empty folder, in one step: of
@@ -92,7 +132,7 @@ impl Folder {
         let list = || -> io::Result<()> {
             let mut marker = Marker::default();
             for (name, path) in self.all()? {
-                marker.add(&name, &sha256(File::open(path)?)?, &self.claim.by);
+                marker.add(&name, &self.sha256_of(&name, &path)?, &self.claim.by);
             }
             marker.write(&self.files)
         };
@@ -127,7 +167,9 @@ impl Folder {
         let _lock = lock_folder(&self.target);
         let mut folder = OwnedFolder::open(&self.target, self.claim.clone())?;
         let hashed = |(name, path): (String, PathBuf)| {
-            Ok((name, Hashed::of(TempPath::try_from_path(path)?)?))
+            let sha256 = self.sha256_of(&name, &path)?;
+            let path = TempPath::try_from_path(path)?;
+            Ok((name, Hashed { path, sha256 }))
         };
         let files = self.all().map_err(&failed)?.into_iter().map(hashed);
         let files: io::Result<Vec<_>> = files.collect();

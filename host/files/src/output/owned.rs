@@ -34,8 +34,8 @@ pub enum State {
 /// Complete file on its way into a folder.
 #[derive(Debug)]
 pub struct Hashed {
-    path: TempPath,
-    sha256: String,
+    pub(super) path: TempPath,
+    pub(super) sha256: String,
 }
 
 impl Hashed {

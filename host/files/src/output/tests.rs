@@ -24,7 +24,7 @@ fn write(target: &Path, claim: Claim, files: &[(&str, &str)]) -> Result<(), Outp
     for (name, content) in files {
         let mut file = folder.file(name).unwrap();
         file.write_all(content.as_bytes()).unwrap();
-        Folder::finish(file).unwrap();
+        folder.finish(file).unwrap();
     }
     folder.commit()
 }
@@ -262,7 +262,7 @@ fn of_two_new_folders_one_is_there() {
     let target = home.path().join("run");
     let prepared = |name: &str| {
         let folder = Folder::create(&target, claim(), [name]).unwrap();
-        Folder::finish(folder.file(name).unwrap()).unwrap();
+        folder.finish(folder.file(name).unwrap()).unwrap();
         folder
     };
     let (first, mut second) = (prepared("a.txt"), prepared("b.txt"));
@@ -287,7 +287,7 @@ fn others_may_read_it_as_any_folder_and_an_empty_one_keeps_its_mode() {
     let target = home.path().join("run");
     let commit = |target: &Path| {
         let folder = Folder::create(target, claim(), ["a.txt"]).unwrap();
-        Folder::finish(folder.file("a.txt").unwrap()).unwrap();
+        folder.finish(folder.file("a.txt").unwrap()).unwrap();
         folder.commit_new().unwrap()
     };
     assert!(commit(&target));
@@ -316,7 +316,7 @@ fn a_folder_on_another_file_system_is_filled() {
     drop(Folder::create(&target, claim(), ["a.txt"]).unwrap());
     assert_eq!(names(other.path()), Vec::<String>::new());
     let folder = Folder::create(&target, claim(), ["a.txt"]).unwrap();
-    Folder::finish(folder.file("a.txt").unwrap()).unwrap();
+    folder.finish(folder.file("a.txt").unwrap()).unwrap();
     assert!(!folder.commit_new().unwrap(), "it is there already");
     folder.commit().unwrap();
     assert_eq!(names(other.path()), ["a.txt"]);

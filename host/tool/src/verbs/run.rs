@@ -212,7 +212,7 @@ fn simulate(
             watch::EventsAlone::new(&folder, scene.duration_s).map_err(|e| failed(&e))?;
         let summary = crepitus_scene::run(scene, &mut watch).map_err(failed_run)?;
         let summary = completed(summary, scene, arguments);
-        watch.finish().map_err(|e| failed(&e))?;
+        watch.finish(&folder).map_err(|e| failed(&e))?;
         let files = vec![results::summary_file(&summary)?];
         let out = write(scene, folder, (wanted, out), files, arguments)?;
         let reported = Reported {
@@ -236,7 +236,7 @@ fn simulate(
     let summary = crepitus_scene::run(scene, &mut watch).map_err(failed_run)?;
     let summary = completed(summary, scene, arguments);
     let listener = watch.listener();
-    let mut figures = watch.finish().map_err(|e| failed(&e))?;
+    let mut figures = watch.finish(&folder).map_err(|e| failed(&e))?;
     if let Some(balance) = plant::balance(&summary) {
         figures.set_balance(balance);
     }

@@ -102,7 +102,7 @@ fn read_substeps(section: &Section<'_>) -> Result<u32, SceneError> {
     }
 }
 
-/// Time between trace rows: a whole number of solver steps.
+/// Time between trace rows: a whole number of solver steps, at least one.
 pub(super) fn read_trace_step(
     output: Option<&Section<'_>>,
     solver_section: &Section<'_>,
@@ -134,9 +134,10 @@ pub(super) fn read_trace_step(
                     format!("a step of {step_s} s is longer than the run of {duration_s} s"),
                 ));
             }
-            let wanted = wanted.unwrap_or(step_s);
+            // A step that is set from outside may be longer than the scene's rows are apart.
+            let wanted = wanted.map_or(step_s, |wanted| wanted.max(step_s));
             let steps = wanted / step_s;
-            if steps < 0.5 || (steps - steps.round()).abs() > 1e-6 * steps {
+            if (steps - steps.round()).abs() > 1e-6 * steps {
                 return Err(refuse(format!(
                     "{wanted} s is not a whole number of steps of {step_s} s"
                 )));

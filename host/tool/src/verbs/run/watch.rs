@@ -5,17 +5,16 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Progress;
 use crate::wav::Listener;
-use crepitus_files::output::Folder;
+use crepitus_files::output::{Folder, Part};
 use crepitus_report::{Collector, Figures, Measured, Setup};
 use crepitus_scene::Observer;
 use crepitus_scene::output::{EventsCsv, TraceCsv};
 use crepitus_scene::trace::{Column, EventRecord, SymptomEvent};
-use std::fs::File;
 use std::io::{self, BufWriter};
 
 pub(super) struct Watch {
-    trace: TraceCsv<BufWriter<File>>,
-    events: EventsCsv<BufWriter<File>>,
+    trace: TraceCsv<BufWriter<Part>>,
+    events: EventsCsv<BufWriter<Part>>,
     collector: Collector,
     listener: Option<Listener>,
     progress: Progress,
@@ -68,9 +67,9 @@ impl Watch {
     }
 
     /// Finishes both files and gives the figures.
-    pub(super) fn finish(self) -> io::Result<Figures> {
-        Folder::finish(self.trace.into_inner())?;
-        Folder::finish(self.events.into_inner())?;
+    pub(super) fn finish(self, folder: &Folder) -> io::Result<Figures> {
+        folder.finish(self.trace.into_inner())?;
+        folder.finish(self.events.into_inner())?;
         Ok(self.collector.finish())
     }
 }
@@ -107,7 +106,7 @@ impl Observer for Watch {
 
 /// The observer of a run without a trace.
 pub(super) struct EventsAlone {
-    events: EventsCsv<BufWriter<File>>,
+    events: EventsCsv<BufWriter<Part>>,
     progress: Progress,
 }
 
@@ -120,8 +119,8 @@ impl EventsAlone {
     }
 
     /// Finishes the file.
-    pub(super) fn finish(self) -> io::Result<()> {
-        Folder::finish(self.events.into_inner())
+    pub(super) fn finish(self, folder: &Folder) -> io::Result<()> {
+        folder.finish(self.events.into_inner())
     }
 }
 
