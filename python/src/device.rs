@@ -23,7 +23,7 @@ use serde_json::{Map, Value};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -37,6 +37,8 @@ pub(crate) struct Device {
     client: Mutex<Option<Client<Connection>>>,
     /// Number of pending calls of `stop`.
     stops: AtomicU32,
+    /// Stops so far: an arm that waited through one is refused.
+    stopped: AtomicU64,
     stop: AtomicBool,
     /// Id of the process that opened it.
     process: u32,
@@ -73,6 +75,7 @@ impl Device {
         Ok(Self {
             client: Mutex::new(Some(client)),
             stops: AtomicU32::new(0),
+            stopped: AtomicU64::new(0),
             stop: AtomicBool::new(false),
             process: process::id(),
         })
@@ -214,7 +217,16 @@ impl Device {
 
     /// Tests the enable lines, then turns torque on.
     fn arm(&self, py: Python<'_>) -> PyResult<()> {
-        self.request(py, Client::arm)
+        let stopped = self.stopped.load(Ordering::SeqCst);
+        self.work(py, |client| {
+            if self.stopped.load(Ordering::SeqCst) != stopped {
+                return Err(errors::device(
+                    "the device was stopped while this waited for its turn: arm it again if you want torque"
+                        .to_owned(),
+                ));
+            }
+            client.arm().map_err(failure)
+        })
     }
 
     /// Turns torque off.
@@ -228,6 +240,7 @@ impl Device {
     /// Turns torque off at once, whichever program has armed the device; ends what another thread
     /// does with it.
     fn stop(&self, py: Python<'_>) -> PyResult<()> {
+        self.stopped.fetch_add(1, Ordering::SeqCst);
         self.stops.fetch_add(1, Ordering::Relaxed);
         self.stop.store(true, Ordering::Relaxed);
         let result = self.request(py, |client| {

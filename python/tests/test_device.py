@@ -254,6 +254,30 @@ def test_stop_ends_what_another_thread_does() -> None:
         device.wait(0.01)
 
 
+def test_an_arm_that_waits_through_a_stop_is_refused() -> None:
+    with Device("sim", real_time=True) as device:
+        device.zero()
+        refused: list[str] = []
+
+        def arm() -> None:
+            try:
+                device.arm()
+            except DeviceError as error:
+                refused.append(str(error))
+
+        holds = threading.Thread(target=lambda: device.stream(60.0))
+        holds.start()
+        time.sleep(0.2)
+        waits = threading.Thread(target=arm)
+        waits.start()
+        time.sleep(0.2)
+        device.stop()
+        for thread in (holds, waits):
+            thread.join(timeout=10)
+        assert len(refused) == 1 and "was stopped" in refused[0], refused
+        assert device.info()["status"]["state"] != "armed"
+
+
 def test_threads_take_turns(device: Device) -> None:
     results: list[object] = []
 

@@ -11,12 +11,18 @@ use std::path::Path;
 
 #[derive(Default)]
 struct Keep {
+    rows: Vec<Vec<f64>>,
     joint: Vec<EventRecord>,
     symptoms: Vec<SymptomEvent>,
 }
 
 impl Observer for Keep {
     type Error = Infallible;
+
+    fn row(&mut self, values: &[f64]) -> Result<(), Infallible> {
+        self.rows.push(values.to_vec());
+        Ok(())
+    }
 
     fn event(&mut self, event: &EventRecord) -> Result<(), Infallible> {
         self.joint.push(*event);
@@ -83,6 +89,27 @@ fn a_jump_anywhere_in_a_step_gives_the_same_slips_in_every_rung() {
                 }
             }
         }
+    }
+}
+
+#[test]
+fn a_reflex_answers_every_jump_within_a_step() {
+    // Two in one step, and one where a step begins.
+    let body = "duration_s = 0.3\n[motion]\nkind = \"velocity-knots\"\nfrom_deg = 60.0\nknots = [\
+                { t_s = 0.0, omega_rad_s = 0.5 }, \
+                { t_s = 0.10001, omega_left_rad_s = 0.5, omega_right_rad_s = 1.5 }, \
+                { t_s = 0.10003, omega_left_rad_s = 1.5, omega_right_rad_s = 0.8 }, \
+                { t_s = 0.15, omega_left_rad_s = 0.8, omega_right_rad_s = 0.2 }]\n\
+                [effects.spasticity]\nform = \"reflex\"\nthreshold_deg = 50.0\ngain_nm_per_rad = 0.5\ndelay_s = 0.012345";
+    let (found, exact) = (events(body, STEPPED).rows, events(body, REFERENCE).rows);
+    assert_eq!(found.len(), exact.len());
+    // Time, angle, velocity, and the reflex.
+    let torque_nm = |row: &[f64]| row[3];
+    let most_nm = exact.iter().map(|row| torque_nm(row)).fold(0.0, f64::max);
+    assert!(most_nm > 0.1, "{most_nm} N*m");
+    for (found, exact) in found.iter().zip(&exact) {
+        let off_nm = (torque_nm(found) - torque_nm(exact)).abs();
+        assert!(off_nm < 1e-7, "{found:?} for {exact:?}");
     }
 }
 
