@@ -288,7 +288,7 @@ impl<F: Real> Law for Cogwheel<F> {
             from = self.switch(is_high, &turn, travel, on_change);
         }
         let with = &self.with;
-        self.elastic_nm = self.resting_nm(&travel.to);
+        self.elastic_nm = with.elastic * travel.end_beyond(&with.neutral);
         let limits = self.limits();
         let part = Part::since(F::ONE, from);
         self.play
@@ -300,7 +300,6 @@ impl<F: Real> Law for Cogwheel<F> {
         self.play.torque_nm() + self.elastic_nm
     }
 
-    #[inline]
     fn resting_nm(&self, place: &Position<F>) -> F {
         let with = &self.with;
         with.elastic * place.beyond(&with.neutral, with.scale.rad_per_count)

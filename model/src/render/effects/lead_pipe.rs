@@ -161,7 +161,7 @@ impl<F: Real> Law for LeadPipe<F> {
     #[cfg_attr(not(target_os = "none"), inline(never))]
     fn follow(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = &self.with;
-        self.elastic_nm = self.resting_nm(&travel.to);
+        self.elastic_nm = with.elastic * travel.end_beyond(&with.neutral);
         let limits = Limits::both(with.torque_nm);
         let part = Part::whole(F::ONE);
         self.play
@@ -173,7 +173,6 @@ impl<F: Real> Law for LeadPipe<F> {
         self.play.torque_nm() + self.elastic_nm
     }
 
-    #[inline]
     fn resting_nm(&self, place: &Position<F>) -> F {
         let with = &self.with;
         with.elastic * place.beyond(&with.neutral, with.scale.rad_per_count)

@@ -338,7 +338,7 @@ impl<F: Real> Wall<F> {
                 self.stage = Stage::Out;
                 on_change.tell(Word::Leave, || travel.reaches(&end.place), nm, nm);
             }
-        } else if beyond_rad < end.cap_rad || self.turns_back(end, nm) {
+        } else if self.turns_back(end, nm) || beyond_rad < end.cap_rad {
             self.stage = Stage::In;
         } else {
             if is_below_cap && !is_reported {
@@ -351,16 +351,14 @@ impl<F: Real> Wall<F> {
         nm
     }
 
-    /// Returns whether the torque is below its limit. A joint that rests at the cap is not, as rounding would let it
-    /// come to the cap once more.
+    /// Returns whether the torque is below its limit. Of a joint that rests at the cap it is not, although rounding in
+    /// f64 would let it come to the cap once more; counts are not rounded.
     #[inline]
     fn turns_back(&self, end: &End<F>, nm: F) -> bool {
-        let slack_nm = if self.stage == Stage::AtCap {
-            F::LIMIT_SLACK * end.cap_nm
-        } else {
-            F::ZERO
-        };
-        self.play.hold() != Hold::Upper && nm <= end.cap_nm - slack_nm
+        let is_rounded = !F::IS_SINGLE
+            && self.stage == Stage::AtCap
+            && nm > end.cap_nm - F::LIMIT_SLACK * end.cap_nm;
+        self.play.hold() != Hold::Upper && !is_rounded
     }
 
     /// The joint meets the wall: the spring begins at its place. If the wall was moved

@@ -79,7 +79,7 @@ pub(super) fn observe(subject: Subject, input: &SceneRun, late_s: f64) -> Observ
     seen
 }
 
-/// What is kept of a run.
+/// Records of a run.
 #[derive(Default)]
 struct Kept {
     place: usize,
