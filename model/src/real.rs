@@ -15,6 +15,36 @@ mod square_root;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+/// A state that only a simulator needs, which computes in f64: in f32, the device's precision, it takes
+/// no memory, and what is done with it is left out.
+pub trait InDouble<T>: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
+    /// The state, if there is one.
+    fn get(&mut self) -> Option<&mut T>;
+}
+
+/// A state that is there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct There<T>(T);
+
+impl<T: State> InDouble<T> for There<T> {
+    #[inline]
+    fn get(&mut self) -> Option<&mut T> {
+        Some(&mut self.0)
+    }
+}
+
+impl<T> InDouble<T> for () {
+    #[inline]
+    fn get(&mut self) -> Option<&mut T> {
+        None
+    }
+}
+
+/// Type that a state of [`InDouble`] can have.
+pub trait State: Copy + Debug + Default + PartialEq + Send + Sync + 'static {}
+
+impl<T: Copy + Debug + Default + PartialEq + Send + Sync + 'static> State for T {}
+
 /// A floating-point type that the model can run in.
 ///
 /// Implemented for `f32` and `f64`; the trait is sealed by what it is for,
@@ -62,6 +92,8 @@ pub trait Real:
     /// far above the subnormal numbers that a decay would otherwise end in,
     /// which some processors compute with slowly.
     const AT_REST: Self;
+    /// A state where this is f64, and nothing where it is f32.
+    type InDouble<T: State>: InDouble<T>;
     /// True for f32, whose 24 bits need only short series.
     const IS_SINGLE: bool;
     /// Name in scene files: `f32` or `f64`.

@@ -1,7 +1,7 @@
 //! f64 that counts what is done with it: what a tick costs, where no processor is at hand to
 //! time it. For tests of promises such as "no root is needed to see it".
 
-use super::Real;
+use super::{Real, State, There};
 use core::cell::Cell;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -104,6 +104,7 @@ impl Neg for Counted {
 }
 
 impl Real for Counted {
+    type InDouble<T: State> = There<T>;
     const ZERO: Self = Self(0.0);
     const HALF: Self = Self(0.5);
     const ONE: Self = Self(1.0);

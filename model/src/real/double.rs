@@ -1,8 +1,9 @@
 //! f64: the elementary functions of `libm`, the same on every target.
 
-use super::Real;
+use super::{Real, State, There};
 
 impl Real for f64 {
+    type InDouble<T: State> = There<T>;
     const ZERO: Self = 0.0;
     const HALF: Self = 0.5;
     const ONE: Self = 1.0;

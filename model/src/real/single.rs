@@ -7,8 +7,8 @@
 //! Coefficients are those of the Taylor series, cut where the next term is
 //! below half a unit in the last place over the reduced range.
 
-use super::Real;
 use super::square_root::square_root;
+use super::{Real, State};
 use core::f32::consts::{FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LOG2_E, PI};
 
 // π/2 = HI + MID + LO, where HI and MID have so few digits that a product with
@@ -160,6 +160,7 @@ fn nearest(x: f32) -> i32 {
 const WORD: f32 = 4_294_967_296.0;
 
 impl Real for f32 {
+    type InDouble<T: State> = ();
     const ZERO: Self = 0.0;
     const HALF: Self = 0.5;
     const ONE: Self = 1.0;

@@ -221,7 +221,7 @@ enum Form {
 
 /// The muscle. It has the memory of both forms: a commit moves none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spasticity<F> {
+pub struct Spasticity<F: Real> {
     form: Form,
     caught: Caught<F>,
     reflex: Reflex<F>,

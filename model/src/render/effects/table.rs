@@ -99,7 +99,7 @@ macro_rules! effects {
 
         /// The laws alone, around a bare solver.
         #[derive(Clone, Debug, PartialEq)]
-        pub struct Effects<F> {
+        pub struct Effects<F: Real> {
             $(#[doc = concat!("`", stringify!($effect), "`.")] pub $effect: Option<$effect::$law<F>>,)*
             /// Tank from which symptoms that are no springs are paid.
             pub tank: Tank<F>,

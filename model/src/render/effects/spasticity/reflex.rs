@@ -11,7 +11,7 @@
 
 use super::{SpasticitySettings, Threshold};
 use crate::joint::SettingsError;
-use crate::real::Real;
+use crate::real::{InDouble, Real};
 use crate::render::effects::Timing;
 use crate::render::effects::symptom::{Hear, Word};
 use crate::render::position::{Scale, Travel};
@@ -38,8 +38,6 @@ pub struct ReflexCoefficients<F> {
     /// what it gains in a tick is less than its last digit.
     lost: F,
     mean: F,
-    /// A tick in units of τa.
-    tick: F,
 }
 
 impl<F: Real> ReflexCoefficients<F> {
@@ -75,8 +73,12 @@ impl<F: Real> ReflexCoefficients<F> {
             delay_rest: F::from_f64((ticks - whole).max(0.0)),
             lost: F::from_f64(lost),
             mean: F::from_f64(lost / x),
-            tick: F::from_f64(x),
         })
+    }
+
+    /// A tick in units of τa.
+    fn tick(&self) -> F {
+        self.lost / self.mean
     }
 
     /// u of a joint that is so far beyond the threshold, N·m.
@@ -112,7 +114,7 @@ impl<F: Real> Jump<F> {
         let answered = F::ONE - with.delay_rest;
         let is_past = answered >= self.at;
         let nm = self.nm;
-        let gained_nm = |since: F| nm * (with.mean - (-(with.tick * since)).exp());
+        let gained_nm = |since: F| nm * (with.mean - (-(with.tick() * since)).exp());
         if self.ago < with.delay {
             return (F::ZERO, F::ZERO);
         }
@@ -130,11 +132,74 @@ impl<F: Real> Jump<F> {
     }
 }
 
-/// The part of a tick that is followed: the whole of it, but for a simulator that splits it.
+/// Jumps of the velocity, and parts of a tick: a simulator has them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Share<F> {
+struct Within<F> {
+    jumps: [Jump<F>; JUMPS],
+    /// The one of them where the last travel began.
+    jumped: Option<Jump<F>>,
+    /// Share of the tick at which the next travel begins, and its length.
     from: F,
     length: F,
+    /// Ω at the end of the last travel, rad/s.
+    omega_rad_s: Option<F>,
+}
+
+impl<F: Real> Default for Within<F> {
+    fn default() -> Self {
+        Self {
+            jumps: [Jump::default(); JUMPS],
+            jumped: None,
+            from: F::ZERO,
+            length: F::ONE,
+            omega_rad_s: None,
+        }
+    }
+}
+
+impl<F: Real> Within<F> {
+    /// Keeps a jump of u where this travel begins.
+    fn look(&mut self, travel: &Travel<F>, with: &ReflexCoefficients<F>) {
+        self.jumped = None;
+        let was_rad_s = self.omega_rad_s.replace(travel.omega_end_rad_s);
+        if was_rad_s == Some(travel.omega_start_rad_s) || travel.ticks != 1 {
+            return;
+        }
+        let input_nm = |omega_rad_s| {
+            let travel = Travel {
+                omega_start_rad_s: omega_rad_s,
+                ..*travel
+            };
+            with.input(with.threshold.start_beyond(&travel)).1
+        };
+        // Nothing before the beginning.
+        let was_nm = was_rad_s.map_or(F::ZERO, input_nm);
+        let jump = Jump {
+            ago: 0,
+            at: self.from,
+            nm: input_nm(travel.omega_start_rad_s) - was_nm,
+        };
+        self.jumped = Some(jump);
+        self.keep(jump);
+    }
+
+    fn keep(&mut self, jump: Jump<F>) {
+        if let Some(free) = self.jumps.iter_mut().find(|other| other.nm == F::ZERO) {
+            *free = jump;
+        }
+    }
+
+    /// Ends a tick: see [`Jump::passes`], for all of them.
+    fn pass(&mut self, with: &ReflexCoefficients<F>) -> (F, F) {
+        self.from = F::ZERO;
+        let mut sum = (F::ZERO, F::ZERO);
+        for jump in self.jumps.iter_mut().filter(|jump| jump.nm != F::ZERO) {
+            let (step_nm, gained_nm) = jump.passes(with);
+            sum = (sum.0 + step_nm, sum.1 + gained_nm);
+            jump.ago = jump.ago.saturating_add(1);
+        }
+        sum
+    }
 }
 
 /// Regime of u, the muscle's input.
@@ -147,7 +212,7 @@ enum Drive {
 
 /// A muscle that answers late.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Reflex<F> {
+pub(super) struct Reflex<F: Real> {
     with: ReflexCoefficients<F>,
     /// u of the last ticks, the latest at `latest`.
     line: [F; REMEMBERED],
@@ -159,12 +224,7 @@ pub(super) struct Reflex<F> {
     /// e, by how much y differs from it, N·m.
     lag_nm: F,
     drive: Drive,
-    jumps: [Jump<F>; JUMPS],
-    /// The one of them where this travel began.
-    jumped: Option<Jump<F>>,
-    share: Share<F>,
-    /// Ω at the end of what was followed last, rad/s.
-    omega_rad_s: Option<F>,
+    within: F::InDouble<Within<F>>,
 }
 
 impl<F: Real> Reflex<F> {
@@ -177,13 +237,7 @@ impl<F: Real> Reflex<F> {
             delayed_nm: F::ZERO,
             lag_nm: F::ZERO,
             drive: Drive::Silent,
-            jumps: [Jump::default(); JUMPS],
-            jumped: None,
-            share: Share {
-                from: F::ZERO,
-                length: F::ONE,
-            },
-            omega_rad_s: None,
+            within: Default::default(),
         }
     }
 
@@ -192,8 +246,7 @@ impl<F: Real> Reflex<F> {
         self.delayed_nm = F::ZERO;
         self.lag_nm = F::ZERO;
         self.drive = Drive::Silent;
-        self.jumps = [Jump::default(); JUMPS];
-        self.omega_rad_s = None;
+        self.within = Default::default();
     }
 
     pub(super) fn torque_nm(&self) -> F {
@@ -219,22 +272,26 @@ impl<F: Real> Reflex<F> {
 
     /// Goes on in ticks, or parts of a tick, of this length.
     pub(super) fn retime(&mut self, settings: &SpasticitySettings, timing: &Timing) {
-        let part = F::from_f64(timing.step_s / settings.activation_s);
-        self.share.length = part / self.with.tick;
+        if let Some(within) = self.within.get() {
+            let part = F::from_f64(timing.step_s / settings.activation_s);
+            within.length = part / self.with.tick();
+        }
     }
 
     /// Answers as it did before a part of a tick, which has no place of its own in its memory: the
     /// answer to the last part is that to the tick, and to the jumps within it.
     pub(super) fn forget_part(&mut self, before: &Self) {
-        let part = *self;
+        let mut part = *self;
         *self = Self {
             drive: part.drive,
-            omega_rad_s: part.omega_rad_s,
             ..*before
         };
-        self.share.from += self.share.length;
-        if let Some(jump) = part.jumped {
-            self.keep(jump);
+        if let (Some(within), Some(part)) = (self.within.get(), part.within.get()) {
+            within.omega_rad_s = part.omega_rad_s;
+            within.from += within.length;
+            if let Some(jump) = part.jumped {
+                within.keep(jump);
+            }
         }
     }
 
@@ -252,9 +309,8 @@ impl<F: Real> Reflex<F> {
         if drive != self.drive {
             self.tell(drive, travel, on_change);
         }
-        // The device's own velocity does not jump.
-        if !F::IS_SINGLE {
-            self.look_for_jump(travel);
+        if let Some(within) = self.within.get() {
+            within.look(travel, &self.with);
         }
         if travel.ticks == 1 {
             self.answer(nm);
@@ -262,38 +318,6 @@ impl<F: Real> Reflex<F> {
             self.answer_over_gap(nm, travel.ticks);
         }
         self.torque_nm()
-    }
-
-    /// Keeps a jump of u where this travel begins.
-    fn look_for_jump(&mut self, travel: &Travel<F>) {
-        self.jumped = None;
-        let was_rad_s = self.omega_rad_s.replace(travel.omega_end_rad_s);
-        if was_rad_s == Some(travel.omega_start_rad_s) || travel.ticks != 1 {
-            return;
-        }
-        let threshold = &self.with.threshold;
-        let input_nm = |omega_rad_s| {
-            let travel = Travel {
-                omega_start_rad_s: omega_rad_s,
-                ..*travel
-            };
-            self.with.input(threshold.start_beyond(&travel)).1
-        };
-        // Nothing before the beginning.
-        let was_nm = was_rad_s.map_or(F::ZERO, input_nm);
-        let jump = Jump {
-            ago: 0,
-            at: self.share.from,
-            nm: input_nm(travel.omega_start_rad_s) - was_nm,
-        };
-        self.jumped = Some(jump);
-        self.keep(jump);
-    }
-
-    fn keep(&mut self, jump: Jump<F>) {
-        if let Some(free) = self.jumps.iter_mut().find(|other| other.nm == F::ZERO) {
-            *free = jump;
-        }
     }
 
     #[cold]
@@ -309,16 +333,10 @@ impl<F: Real> Reflex<F> {
         self.remember(nm);
         let mut delayed_nm = self.delayed();
         let mut sooner_nm = F::ZERO;
-        if !F::IS_SINGLE {
-            for jump in &mut self.jumps {
-                if jump.nm != F::ZERO {
-                    let (step_nm, gained_nm) = jump.passes(&self.with);
-                    delayed_nm += step_nm;
-                    sooner_nm += gained_nm;
-                    jump.ago = jump.ago.saturating_add(1);
-                }
-            }
-            self.share.from = F::ZERO;
+        if let Some(within) = self.within.get() {
+            let (step_nm, gained_nm) = within.pass(&self.with);
+            delayed_nm += step_nm;
+            sooner_nm = gained_nm;
         }
         let with = &self.with;
         let left_nm = self.lag_nm - with.lost * self.lag_nm + sooner_nm;
