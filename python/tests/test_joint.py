@@ -23,9 +23,12 @@ def motion(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("convention", ["frozen", "paper", "physical"])
 def test_it_is_the_joint_of_a_run(convention: str) -> None:
-    run = crepitus.run(
-        "fig6-ideal-cycle", set={"effects.crepitus.convention": convention, "duration_s": 1.0}
-    )
+    changes = {
+        "effects.crepitus.convention": convention,
+        "duration_s": 1.0,
+        "output.trace_step_s": STEP_S,
+    }
+    run = crepitus.run("fig6-ideal-cycle", set=changes)
     omega = run.trace["omega_rad_s"]
     joint = Joint("coarse", convention=convention, step_s=STEP_S, omega_rad_s=omega[0])
     states = joint.steps(np.diff(run.trace["angle_rad"]), omega[1:])
