@@ -26,6 +26,9 @@
 //! | devices, what they are given | `device.rs`, `knee.rs` |
 //! | samples, recordings | `following.rs`, `received.rs`, `samples.rs` |
 
+// Python hands its arguments over by value.
+#![allow(clippy::needless_pass_by_value)]
+
 mod columns;
 mod device;
 mod errors;
