@@ -62,7 +62,7 @@ cp target/figures/vibration/hand-spectrum.svg docs/images/hand-spectrum.svg
 echo docs/images/hand-spectrum.svg
 
 # The numbers of the page about effects are what these print.
-for scene in fig8-5-hand fig9-low-speed; do
+for scene in fig8 fig9; do
     cargo run --profile dist --features emulator --quiet -- effects "$scene" --pictures --out "target/figures/effects-$scene"
     cp "target/figures/effects-$scene/build-up.svg" "docs/images/build-up-${scene%%-*}.svg"
     echo "docs/images/build-up-${scene%%-*}.svg"

@@ -237,13 +237,13 @@ fn paths_that_are_not_utf_8_are_printed_as_json() {
         );
     };
     let wav = [at("run"), "--wav".into(), at("knee.wav")];
-    run("run fig8-5-hand --set duration_s=0.2 --out", &wav);
+    run("run fig8 --set duration_s=0.2 --out", &wav);
     run(
-        "effects fig8-3-cuff --set duration_s=0.2 --out",
+        "effects fig8-4-cuff --set duration_s=0.2 --out",
         &[at("effects")],
     );
     run("stability --case H01 --out", &[at("stability")]);
-    let sweep = "sweep fig8-5-hand --set duration_s=0.05 --format csv --vary effects.crepitus.static_torque_nm=1,2 --out";
+    let sweep = "sweep fig8 --set duration_s=0.05 --format csv --vary effects.crepitus.static_torque_nm=1,2 --out";
     run(sweep, &[at("sweep")]);
     let half = |shard: &str, name: &str| [at(name), "--shard".into(), shard.into()];
     run(sweep, &half("1/2", "one"));

@@ -317,9 +317,9 @@ fn a_run_can_be_heard() {
     assert!((peak - 29_195).abs() < 40, "{peak}");
     // With a hand, what it feels; from the same run the same bytes.
     let hand = [&wav[..], &["--wav-of", "hand", "--force"]].concat();
-    played("fig8-5-hand", &home.path().join("b"), &hand);
+    played("fig8", &home.path().join("b"), &hand);
     let once = fs::read(&file).unwrap();
-    played("fig8-5-hand", &home.path().join("c"), &hand);
+    played("fig8", &home.path().join("c"), &hand);
     assert!(once == fs::read(&file).unwrap());
 
     refused("slow-examination", &["--wav", "knee.mp3"], &[".wav"]);

@@ -12,7 +12,7 @@ fn effects_are_the_same_in_both() {
     let out = home.path().join("study");
     let output = run(&[
         "effects",
-        "fig8-3-cuff",
+        "fig8-4-cuff",
         "--set",
         "duration_s=0.2",
         "--out",

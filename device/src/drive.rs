@@ -2,9 +2,10 @@
 //!
 //! ```text
 //! priority   task               when                      parts
+//! 5          sample_encoder     every 50 µs                Exchange
 //! 4          command_motor      half a tick later, at the  Safety, Motor, Plausibility, Batch
 //!                               converters' end
-//! 3          render_torque      every 50 µs                Sampler, Rendering
+//! 3          render_torque      after each sample          Sampler, Rendering
 //! 1          link               bytes, room to send        Link
 //! idle                                                     Preparation
 //! ```
@@ -172,9 +173,14 @@ impl Drive {
         })
     }
 
-    /// `render_torque`, priority 3: with the counter as the tick begins.
-    pub fn render_torque(&mut self, counter: u32) {
-        if self.rendering.tick(counter, &self.exchange) {
+    /// `sample_encoder`, priority 5: with the counter as the tick begins.
+    pub fn sample_encoder(&mut self, counter: u32) {
+        self.exchange.sample(counter);
+    }
+
+    /// `render_torque`, priority 3: after the sample.
+    pub fn render_torque(&mut self) {
+        if self.rendering.tick(&self.exchange) {
             let plan = self.prepared.as_ref().map(|prepared| &prepared.rendering);
             self.rendering.take_over(plan, &self.exchange);
         }

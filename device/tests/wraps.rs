@@ -139,7 +139,8 @@ fn command_sequence_numbers_wrap() {
     let mut drive = Drive::new(&boots().drive).unwrap();
     for number in [0xfffe, 0xffff, 0, 1] {
         for _ in 0..200 {
-            drive.render_torque(0);
+            drive.sample_encoder(0);
+            drive.render_torque();
             drive.command_motor(&Inputs::default());
         }
         let command = ToDrive::Command {

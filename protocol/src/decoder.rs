@@ -7,6 +7,7 @@ use crate::frame::{
     BODY_BYTES, CRC_BYTES, Checksum, DELIMITER, FRAME_BYTES, SoftwareCrc, WORD, WordCrc,
 };
 use crate::lane::Lane;
+use cobs::{DecodeResult, DecoderState};
 use crc::CRC_32_ISO_HDLC;
 use serde::Deserialize;
 
@@ -68,14 +69,11 @@ impl Discarded {
     }
 }
 
-/// Incremental decoder: computes COBS and checksum as bytes arrive, so the last
-/// byte costs hardly more than the others.
+/// Incremental decoder: computes COBS, by the crate `cobs`, and checksum as bytes arrive,
+/// so the last byte costs hardly more than the others.
 #[derive(Debug)]
 pub struct Decoder {
-    /// Bytes until the next COBS code.
-    left: u8,
-    /// Whether the current run ends with a zero, if more bytes follow.
-    is_zero_due: bool,
+    cobs: DecoderState,
     /// Body and checksum received so far.
     plain: [u8; BODY_BYTES + CRC_BYTES],
     /// Bytes of it.
@@ -104,8 +102,7 @@ impl Decoder {
     /// Starts at the beginning of a frame.
     pub fn new() -> Self {
         Self {
-            left: 0,
-            is_zero_due: false,
+            cobs: DecoderState::Idle,
             plain: [0; BODY_BYTES + CRC_BYTES],
             filled: 0,
             checksum: Checksum::new(),
@@ -131,7 +128,7 @@ impl Decoder {
     }
 
     /// Decodes bytes up to the first delimiter among them: how many, and the
-    /// frame or the error that ends there. A run between two codes is copied at once.
+    /// frame or the error that ends there.
     pub fn extend(&mut self, bytes: &[u8]) -> (usize, Option<Result<Body<'_>, FrameError>>) {
         self.extend_by(&mut SoftwareCrc, bytes)
     }
@@ -160,48 +157,26 @@ impl Decoder {
         }
         self.begin();
         self.length = self.length.saturating_add(bytes.len());
-        let mut rest = bytes;
-        while !rest.is_empty() {
-            rest = self.add_places(rest);
+        // A copy, which the compiler keeps in registers.
+        let (mut cobs, mut filled) = (core::mem::take(&mut self.cobs), self.filled);
+        for byte in bytes {
+            // A byte that is no delimiter is valid wherever it stands.
+            let Ok(DecodeResult::DataContinue(plain)) = cobs.feed(*byte) else {
+                continue;
+            };
+            match self.plain.get_mut(filled) {
+                Some(place) => {
+                    *place = plain;
+                    filled = filled.wrapping_add(1);
+                }
+                // No body is so long.
+                None => self.length = FRAME_BYTES,
+            }
         }
+        (self.cobs, self.filled) = (cobs, filled);
         if self.filled.wrapping_sub(self.summed) >= CHUNK {
             self.sum_words(unit);
         }
-    }
-
-    /// Adds bytes, of which each code becomes the zero in its place. Ends before a code
-    /// without a zero, which is the first one and that behind one of 255; returns the rest.
-    fn add_places<'a>(&mut self, bytes: &'a [u8]) -> &'a [u8] {
-        if self.left == 0 && !self.is_zero_due {
-            let Some((code, behind)) = bytes.split_first() else {
-                return bytes;
-            };
-            (self.left, self.is_zero_due) = self::code(*code);
-            return behind;
-        }
-        let places = self.plain.get_mut(self.filled..).unwrap_or_default();
-        let (mut left, mut is_zero_due, mut taken) = (self.left, self.is_zero_due, 0_usize);
-        for (place, byte) in places.iter_mut().zip(bytes) {
-            if left > 0 {
-                *place = *byte;
-                left = left.wrapping_sub(1);
-            } else if is_zero_due {
-                *place = 0;
-                (left, is_zero_due) = code(*byte);
-            } else {
-                break;
-            }
-            taken = taken.wrapping_add(1);
-        }
-        (self.left, self.is_zero_due) = (left, is_zero_due);
-        self.filled = self.filled.wrapping_add(taken);
-        let rest = bytes.get(taken..).unwrap_or_default();
-        if !rest.is_empty() && (left > 0 || is_zero_due) {
-            // Without a place for the next one: no body is so long.
-            self.length = FRAME_BYTES;
-            return &[];
-        }
-        rest
     }
 
     /// Resets the decoder before the first byte of a frame.
@@ -225,9 +200,12 @@ impl Decoder {
             count.overlong = count.overlong.wrapping_add(1);
             return Some(Err(FrameError::Overlong));
         }
+        let ended = self.cobs.feed(DELIMITER);
         let plain = self.plain.get(..self.filled);
         let plain = plain.and_then(<[u8]>::split_last_chunk::<CRC_BYTES>);
-        let opened = if let (0, Some(([lane, tag, payload @ ..], _))) = (self.left, plain) {
+        let opened = if let (Ok(DecodeResult::DataComplete), Some(([lane, tag, payload @ ..], _))) =
+            (ended, plain)
+        {
             if self.checksum.value() == RESIDUE {
                 Ok(Body {
                     lane: *lane,
@@ -247,7 +225,7 @@ impl Decoder {
 
     /// Discards a partial frame, after a disconnect.
     pub fn reset(&mut self) {
-        (self.left, self.is_zero_due) = (0, false);
+        self.cobs = DecoderState::Idle;
         self.filled = 0;
         self.checksum = Checksum::new();
         self.summed = 0;
@@ -278,16 +256,11 @@ impl Decoder {
     }
 }
 
-/// Bytes until the next code, and whether a zero follows them: 254 have none.
-#[inline]
-fn code(code: u8) -> (u8, bool) {
-    (code.wrapping_sub(1), code != u8::MAX)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::frame::{BODY_BYTES, CRC, encode_body};
+    use crate::reference;
     use proptest::prelude::*;
     use std::vec::Vec;
 
@@ -337,14 +310,14 @@ mod tests {
                 if ends.len() > 1 && !whole {
                     continue;
                 }
-                let mut frame = cobs::encode_vec(&plain);
+                let mut frame = reference::encode(&plain);
                 frame.extend(ends);
                 let found = decode(&mut Decoder::new(), &frame);
                 assert_eq!(found, (std::vec![body.clone()], 0), "{length} {ends:?}");
             }
         }
         // One byte more than any body has.
-        let mut frame = cobs::encode_vec(&[7; BODY_BYTES + CRC_BYTES + 1]);
+        let mut frame = reference::encode(&[7; BODY_BYTES + CRC_BYTES + 1]);
         frame.push(0);
         let mut decoder = Decoder::new();
         assert_eq!(decode(&mut decoder, &frame), (Vec::new(), 1));
@@ -414,17 +387,17 @@ mod tests {
             prop_assert_eq!(bodies.last(), Some(&body(length)));
         }
 
-        /// Checks that, whatever stands between two delimiters, a body is found where `cobs`
-        /// finds one, the same.
+        /// Checks that, whatever stands between two delimiters, a body is found where another
+        /// implementation finds one, the same.
         #[test]
-        fn finds_what_cobs_finds(mut frame: Vec<u8>, whole in any::<bool>()) {
+        fn finds_what_another_finds(mut frame: Vec<u8>, whole in any::<bool>()) {
             if whole {
                 frame.truncate(BODY_BYTES);
                 frame = encode_body(&frame).unwrap().to_vec();
             }
             frame.retain(|byte| *byte != 0);
             frame.truncate(FRAME_BYTES - 1);
-            let plain = cobs::decode_vec(&frame).ok();
+            let plain = reference::decode(&frame);
             let expected = plain.and_then(|plain| {
                 let (body, checksum) = plain.split_last_chunk::<CRC_BYTES>()?;
                 let is_right = CRC.checksum(body).to_le_bytes() == *checksum;

@@ -70,6 +70,8 @@ pub mod management;
 pub mod measured;
 pub mod parameters;
 pub mod pieces;
+#[cfg(test)]
+mod reference;
 pub mod revision;
 pub mod schema;
 pub mod settings;

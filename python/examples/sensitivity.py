@@ -19,7 +19,7 @@ from SALib.sample import sobol as sample
 
 import crepitus
 
-SCENE = crepitus.Scene("fig8-5-hand")
+SCENE = crepitus.Scene("fig8")
 SHARE = 0.3
 FELT = ["grating at the hand", "whole torque at the hand", "pitch of the grating"]
 

@@ -1,13 +1,13 @@
-//! The exchange between `render_torque` and `command_motor`, without a lock.
+//! The exchange between the three tasks of a tick, without a lock.
 //!
 //! ```text
-//! render_torque (3)                                command_motor (4)
-//!   Rendered ──> the slot that is not the newest ──> the newest slot
-//!   tick, block, armed <──────────────────────────── after its tick
+//! sample_encoder (5)     render_torque (3)                                command_motor (4)
+//!   count ─────────────>   Rendered ──> the slot that is not the newest ──> the newest slot
+//!                          tick, block, armed <──────────────────────────── after its tick
 //! ```
 //!
 //! `command_motor` interrupts `render_torque`, never the other way round, so a
-//! result is either whole or not yet the newest. Both run on one core, where
+//! result is either whole or not yet the newest. All run on one core, where
 //! the order of the program is the order of memory: a fence for the compiler is
 //! enough.
 //!
@@ -111,9 +111,10 @@ const STORED: u8 = 1;
 /// `render_torque` has applied its half.
 const HALF_APPLIED: u8 = 2;
 
-/// The exchange of the two tasks.
+/// The exchange of the three tasks.
 #[derive(Debug)]
 pub struct Exchange {
+    counter: AtomicU32,
     slots: [[AtomicU32; WORDS]; 2],
     /// The slot of the newest result.
     newest: AtomicUsize,
@@ -130,6 +131,7 @@ impl Exchange {
     #[expect(clippy::cast_possible_truncation, reason = "the lowest bits")]
     pub const fn new(tick: u64) -> Self {
         Self {
+            counter: AtomicU32::new(0),
             slots: [const { [const { AtomicU32::new(0) }; WORDS] }; 2],
             newest: AtomicUsize::new(NONE),
             tick: AtomicU32::new(tick as u32),
@@ -139,6 +141,16 @@ impl Exchange {
             plan: AtomicU8::new(NO_PLAN),
             is_settling: AtomicBool::new(false),
         }
+    }
+
+    /// `sample_encoder`: stores the encoder's counter as the tick begins.
+    pub fn sample(&self, counter: u32) {
+        self.counter.store(counter, Relaxed);
+    }
+
+    /// `render_torque`: the counter as the tick began.
+    pub fn counter(&self) -> u32 {
+        self.counter.load(Relaxed)
     }
 
     /// `render_torque`: shows a result.

@@ -1,4 +1,4 @@
-//! `render_torque`: the encoder, the [pipeline](crepitus_model::render) with the
+//! `render_torque`: the shaft's motion, the [pipeline](crepitus_model::render) with the
 //! firmware's stages, and the application of a commit.
 //!
 //! The joint runs in every tick, also while torque is off.
@@ -82,11 +82,11 @@ impl Rendering {
         stages.limits.change(plan.torque_limit_nm, plan.slew_nm);
     }
 
-    /// Runs one tick with the encoder's counter as the tick begins. True if a plan
+    /// Runs one tick with the counter that was sampled as it began. True if a plan
     /// is due: then [`Self::take_over`] follows.
-    pub fn tick(&mut self, counter: u32, exchange: &Exchange) -> bool {
+    pub fn tick(&mut self, exchange: &Exchange) -> bool {
         let turn = exchange.turn();
-        let sampled = self.sampler.sample(counter);
+        let sampled = self.sampler.sample(exchange.counter());
         self.omega_rad_s = sampled.omega_rad_s;
         let rendered = self.render(&turn, &sampled);
         exchange.set_settling(self.is_settling);

@@ -126,7 +126,8 @@ impl Bench {
     fn tick(&mut self) {
         let next = self.script.pop_front();
         self.motor.turned = next.or(self.motor.turned);
-        self.drive.render_torque(self.motor.counter());
+        self.drive.sample_encoder(self.motor.counter());
+        self.drive.render_torque();
         if next.is_some() {
             self.rendered.extend(self.drive.rendered());
         }

@@ -43,7 +43,7 @@ pub struct DriveBoard {
     pub crc_unit: CrcUnit,
     /// Stores the last ticks.
     pub black_box: BlackBox,
-    /// Starts `render_torque`.
+    /// Starts `sample_encoder`.
     pub begin: BeginOfTick,
     /// Starts `command_motor`.
     pub middle: MiddleOfTick,

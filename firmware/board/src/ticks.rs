@@ -3,9 +3,9 @@
 //! ```text
 //! TIM1   ╱╲        bridge: up and down in 50 µs; switches load at the bottom
 //!       ╱  ╲
-//! TIM4  |          render_torque, at the bottom
+//! TIM4  |          sample_encoder, at the bottom, and after it render_torque
 //! TIM3     |       the converters, in the middle of the top: no switching near
-//!           |      command_motor, 3.2 µs later: the currents are converted
+//!           |      command_motor, 6.7 µs later: the currents are converted, the torque is ready
 //! TIM8   as TIM1: the driver of the coil
 //! TIM2  ...        µs, for the time between two ticks
 //! ```
@@ -31,8 +31,10 @@ const COUNT_CLOCKS: u16 = 2;
 /// begin 1.14 µs before it.
 const CONVERTER_EARLY: u16 = converter::TO_MIDDLE / COUNT_CLOCKS;
 
-/// Counts from the converters' start to `command_motor`: 3.2 µs. All conversions take 2.86.
-const CONVERSION: u16 = 269;
+/// Counts from the converters' start to `command_motor`: 6.7 µs. All conversions take 2.86; the
+/// rest is time for `render_torque`, whose first tick after a commit of everything takes some 28 µs. What
+/// is commanded is loaded at the bottom, 20 µs later, whenever it came.
+const CONVERSION: u16 = 563;
 const _: () = assert!(CONVERSION * COUNT_CLOCKS > converter::TO_END + 48);
 
 /// Clocks of TIM2 in a microsecond.

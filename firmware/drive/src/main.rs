@@ -4,21 +4,23 @@
 //!
 //! | priority | task | interrupt | when | resources of its own |
 //! |---|---|---|---|---|
+//! | 5 | `sample_encoder` | TIM4 | every 50 µs | encoder |
 //! | 4 | `command_motor` | TIM3 | in the middle of the tick, when the current is converted | bridge, coil, lines, write access to them, converters, clock |
-//! | 3 | `render_torque` | TIM4 | every 50 µs | encoder, the model |
+//! | 3 | `render_torque` | TIM7, pended | after each sample | the model |
 //! | 1 | `link` | DMA2_STREAM6, pended | after each tick, and after each sent frame | the link, watchdog |
 //! | 0 | `idle` | | always | preparation, log |
 //!
 //! | shared | between | locked for |
 //! |---|---|---|
 //! | `command`: safety, motor, blocks, its plan | 4, 1, 0 | a status, two samples; storing the plan |
-//! | `exchange` | 4, 3, 0 | never: atomic |
+//! | `exchange` | 5, 4, 3, 0 | never: atomic |
 //! | `rendering_plan` | 3, 0 | storing it; applying it |
 //! | `commits` | 1, 0 | handing over a commit |
 //!
 //! Parameters go from `link` by `commits` to `idle`, which computes step
 //! coefficients from them; between two blocks the two tasks apply their halves.
-//! Only `idle` logs, and nothing blocks.
+//! `sample_encoder` shares nothing that is locked: no task delays the sample. Only
+//! `idle` logs, and nothing blocks.
 #![no_std]
 #![no_main]
 
@@ -62,15 +64,19 @@ mod app {
     /// Starts `link`, as the end of a sent frame does.
     const LINK: Interrupt = Interrupt::DMA2_STREAM6;
 
+    /// Starts `render_torque`: the vector of a timer that stays off.
+    const RENDER: Interrupt = Interrupt::TIM7;
+
     /// Tasks that check in with the watchdog.
-    const COMMANDED: usize = 0;
-    const RENDERED: usize = 1;
-    const LINKED: usize = 2;
-    const TASKS: usize = 3;
+    const SAMPLED: usize = 0;
+    const COMMANDED: usize = 1;
+    const RENDERED: usize = 2;
+    const LINKED: usize = 3;
+    const TASKS: usize = 4;
 
     /// The most bytes that a run of `link` receives, every other tick: 160 in a
     /// millisecond. Comms sends 25, and while a commit is sent 145.
-    const RUN_BYTES: usize = 16;
+    const RUN_BYTES: usize = 24;
 
     /// Timeout of `idle` in runs of `link`: at most 250 ms.
     const IDLE_TIMEOUT_RUNS: u32 = 5_000;
@@ -169,6 +175,20 @@ mod app {
     }
 
     #[task(
+        binds = TIM4, priority = 5,
+        local = [begin, encoder],
+        shared = [&exchange, &is_running, &checkins]
+    )]
+    fn sample_encoder(cx: sample_encoder::Context) {
+        cx.local.begin.acknowledge();
+        cx.shared.checkins.check_in(SAMPLED);
+        if cx.shared.is_running.load(Ordering::Relaxed) {
+            cx.shared.exchange.sample(cx.local.encoder.count());
+            rtic::pend(RENDER);
+        }
+    }
+
+    #[task(
         binds = TIM3, priority = 4,
         local = [
             middle, converters, clock, line, comms_line, bridge, coil, output_access, black_box,
@@ -222,19 +242,14 @@ mod app {
     }
 
     #[task(
-        binds = TIM4, priority = 3,
-        local = [begin, encoder, rendering],
-        shared = [rendering_plan, &exchange, &is_running, &checkins]
+        binds = TIM7, priority = 3,
+        local = [rendering],
+        shared = [rendering_plan, &exchange, &checkins]
     )]
     fn render_torque(mut cx: render_torque::Context) {
-        cx.local.begin.acknowledge();
         cx.shared.checkins.check_in(RENDERED);
-        if !cx.shared.is_running.load(Ordering::Relaxed) {
-            return;
-        }
-        let counter = cx.local.encoder.count();
         let (rendering, exchange) = (cx.local.rendering, cx.shared.exchange);
-        if rendering.tick(counter, exchange) {
+        if rendering.tick(exchange) {
             cx.shared
                 .rendering_plan
                 .lock(|plan| rendering.take_over(plan.as_ref(), exchange));
@@ -311,18 +326,14 @@ mod app {
             prepare_pending(preparation, &mut gathered, &mut parts, exchange, counters);
             let now = parts.parts.command(|command| {
                 let safety = command.safety();
-                let fault = safety.fault().map_or(0, Fault::code);
-                (safety.state(), fault, command.revision())
+                (safety.state(), safety.fault().map_or(0, Fault::code))
             });
+            // Not the revision: the log disables interrupts for some 5 µs, and the ticks after a
+            // commit have the least time to spare.
             if reported != Some(now) {
                 reported = Some(now);
-                let (state, fault, revision) = now;
-                defmt::info!(
-                    "{=str}, fault {=u8}, revision {=u32}",
-                    state.name(),
-                    fault,
-                    revision.0
-                );
+                let (state, fault) = now;
+                defmt::info!("{=str}, fault {=u8}", state.name(), fault);
             }
             cx.shared.checkins.idle_checks_in();
             board::sleep();

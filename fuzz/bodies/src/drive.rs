@@ -362,7 +362,8 @@ impl Bench {
         self.counter = self.counter.wrapping_add_signed(readings.turn.into());
         // Ticks begin with the first result.
         if !readings.is_late || self.drive.rendered().is_none() {
-            self.drive.render_torque(self.counter);
+            self.drive.sample_encoder(self.counter);
+            self.drive.render_torque();
         }
         let current_a = readings.current_a.unwrap_or(self.winding.current_a());
         let (mut monitor_a, mut interval_us, mut coil_a) =

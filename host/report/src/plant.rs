@@ -91,8 +91,8 @@ const SHOWN: [Shown; 16] = [
         ..shown("gap_rad", "Backlash: rotor ahead of the joint", "Angle (°)")
     },
     shown(
-        "cuff_torque_nm",
-        "Cuff: torque of the brace on the leg",
+        "brace_torque_nm",
+        "Brace: torque on the leg, as a force sensor between them shows it",
         "Torque (N·m)",
     ),
     shown(

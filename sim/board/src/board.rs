@@ -280,7 +280,8 @@ impl Board {
 
     fn render(&mut self) {
         for _ in 0..self.renderings {
-            self.drive.render_torque(self.leg.count().cast_unsigned());
+            self.drive.sample_encoder(self.leg.count().cast_unsigned());
+            self.drive.render_torque();
         }
     }
 

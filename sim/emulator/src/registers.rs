@@ -20,10 +20,11 @@ use std::fmt::Write;
 const INTERRUPTS: u32 = 82;
 
 /// Names of those that an image uses.
-const NAMES: [(u32, &str); 5] = [
+const NAMES: [(u32, &str); 6] = [
     (28, "TIM2"),
     (29, "TIM3"),
     (30, "TIM4"),
+    (55, "TIM7"),
     (67, "OTG_FS"),
     (69, "DMA2_STREAM6"),
 ];

@@ -82,7 +82,7 @@ fn braced([stiffness, damping, inertia]: [f64; 3], substeps: u32) -> Summary {
         "substeps = {substeps}\n[effects.crepitus]\n[effects.cuff]\nstiffness_nm_per_rad = {stiffness:?}\n\
          damping_nms_per_rad = {damping:?}\nbrace_inertia_kg_m2 = {inertia:?}\n"
     );
-    simulate(&scene(0.05, STEADY, 5e-5, &effects), "cuff_torque_nm").1
+    simulate(&scene(0.05, STEADY, 5e-5, &effects), "brace_torque_nm").1
 }
 
 #[test]

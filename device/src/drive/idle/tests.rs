@@ -184,7 +184,7 @@ impl<'a> Bench<'a> {
         while let Some((_, event)) = self.events.pop_front_if(|(at, _)| *at <= self.ticks) {
             self.happens(event);
         }
-        if self.rendering.tick(0, self.exchange) {
+        if self.rendering.tick(self.exchange) {
             let plan = self.plan.as_ref().map(|plan| &plan.rendering);
             self.rendering.take_over(plan, self.exchange);
         }

@@ -183,7 +183,8 @@ impl Device {
         self.counter = self.counter.wrapping_add_signed(readings.turn.into());
         // Ticks begin with the first result.
         if !readings.is_late || self.drive.rendered().is_none() {
-            self.drive.render_torque(self.counter);
+            self.drive.sample_encoder(self.counter);
+            self.drive.render_torque();
         }
         let current_a = self.winding.current_a();
         let outputs = self.drive.command_motor(&Inputs {

@@ -194,7 +194,8 @@ impl Device {
     }
 
     fn tick(&mut self) {
-        self.drive.render_torque(self.counter());
+        self.drive.sample_encoder(self.counter());
+        self.drive.render_torque();
         #[expect(clippy::cast_possible_truncation, reason = "rounded to f32")]
         let current_a = self.current_a as f32;
         let outputs = self.drive.command_motor(&drive::command::Inputs {

@@ -31,8 +31,8 @@ Examples:
   crepitus run high-speed --set effects.crepitus.preset=fine \\
       --set duration_s=2
   crepitus run passive-examination --as-device
-  crepitus run fig8-5-hand --wav knee.wav --wav-of hand
-  crepitus run fig8-5-hand --overlay bench.csv \\
+  crepitus run fig8 --wav knee.wav --wav-of hand
+  crepitus run fig8 --overlay bench.csv \\
       --overlay-columns t_s=time,hand_torque_nm=M
   crepitus run out/high-speed/summary.json
 

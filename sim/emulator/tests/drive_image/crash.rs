@@ -1,13 +1,11 @@
 //! The post-mortem record of the real image.
 
 use crate::host::{Host, examination, image};
+use crate::tasks::RENDER;
 use crepitus_emulator::{Mcu, Reset};
 use crepitus_protocol::crash::{Controller, End, Head, TICKS, Tick, ticks};
 use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Sample, SampleFlags};
-
-/// Exception of `render_torque`.
-const RENDER: u16 = 16 + 30;
 
 /// `udf #0`, and `b .`
 const UNDEFINED: [u8; 2] = [0x00, 0xde];

@@ -85,8 +85,8 @@ fn interference_on_the_encoder() {
     assert_eq!(drive_fault(&mut host), Fault::EncoderLost.code());
 }
 
-/// Control and reload registers of the timers of `command_motor` and
-/// `render_torque`.
+/// Control and reload registers of the timers of `command_motor` and of `sample_encoder`,
+/// with `render_torque` behind it.
 const COMMAND_CONTROL: u32 = 0x4000_0400;
 const COMMAND_RELOAD: u32 = 0x4000_042c;
 const RENDER_CONTROL: u32 = 0x4000_0800;

@@ -5,9 +5,10 @@
 //! judged here, so it is left out without.
 
 use crate::actuator;
-use crate::budget::{RENDER, begin_commit};
+use crate::budget::begin_commit;
 use crate::host::{Flash, is_long};
 use crate::symptoms::{CASES, Case, PERIOD_TICKS, SYMPTOMS, armed, commit, values_of};
+use crate::tasks::{COMMAND, LINK, RENDER, SAMPLE};
 use crepitus_emulator::Time;
 use crepitus_emulator::firmware::{Program, path};
 use crepitus_emulator::mcu::{Step, Watch};
@@ -20,11 +21,8 @@ const LISTED: usize = 18;
 /// Cycles by the address of an instruction.
 type Addresses = BTreeMap<u32, u64>;
 
-/// Exceptions of the other tasks.
-const COMMAND: u16 = 16 + 29;
-const LINK: u16 = 16 + 69;
-
-const TASKS: [(&str, u16); 3] = [
+const TASKS: [(&str, u16); 4] = [
+    ("sample_encoder", SAMPLE),
     ("command_motor", COMMAND),
     ("render_torque", RENDER),
     ("link", LINK),

@@ -75,7 +75,7 @@ const TOP: f64 = 4_200.0;
 const RING: u32 = 2_048;
 
 /// The most that a run of the task takes of them.
-const RUN: u32 = 16;
+const RUN: u32 = 24;
 
 /// Ticks that are compared, at least.
 const TICKS: usize = 20_000;
@@ -226,7 +226,8 @@ impl Replay<'_> {
         if in_force.is_some_and(|revision| *revision != self.drive.revision()) {
             self.drive.prepare();
         }
-        self.drive.render_torque(counter);
+        self.drive.sample_encoder(counter);
+        self.drive.render_torque();
     }
 
     /// Receives or sends, as the task does.

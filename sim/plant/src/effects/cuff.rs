@@ -73,7 +73,7 @@ const NAME: &str = "cuff";
 const KIND: Kind = Kind {
     effect: NAME,
     body: "brace",
-    column: "cuff_torque_nm",
+    column: "brace_torque_nm",
     advice: "torques at brace and leg are not those of such a cuff: choose more substeps, a softer cuff or a larger \
              brace_inertia_kg_m2",
 };

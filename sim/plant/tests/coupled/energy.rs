@@ -31,7 +31,7 @@ fn run(case: &Case) -> Result<f64, TestCaseError> {
             let gap = rig.get("gap_rad");
             prop_assert!(gap.abs() <= half_rad, "{gap} beyond {half_rad} at tick {n}");
             let between = rig.shaft().angle_rad - rig.leg().angle_rad;
-            if !rig.has("cuff_torque_nm") {
+            if !rig.has("brace_torque_nm") {
                 prop_assert!((between - gap).abs() < 1e-12);
             }
         }
