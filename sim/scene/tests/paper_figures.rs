@@ -1,4 +1,4 @@
-//! What the paper says of its Figs. 8 and 9, counted in the scenes that stand for them:
+//! The paper's words on its Figs. 8 and 9, counted in the scenes that stand for them:
 //! "In the sticking phase, the presented torque increased and angular velocity decreased. On the
 //! contrary, in the slipping phase, the presented torque decreased and angular velocity increased."
 //!
@@ -72,7 +72,7 @@ impl Signals {
             .collect()
     }
 
-    /// How a signal goes, last against first sample of a phase, this many rows later.
+    /// Direction of a signal, last against first sample of a phase, this many rows later.
     fn counts(&self, signal: &[f64], lag: usize) -> Counts {
         let fast = without_slow_part(signal);
         let mut counts = Counts::default();
