@@ -79,9 +79,19 @@ fn a_hanging_weight_is_found_written_and_applied() {
         set,
         [
             "motor.torque_constant_nm_per_a",
-            "friction-compensation.friction_nm"
+            "friction-compensation.friction_nm",
+            "friction-compensation.share",
+            "friction-compensation.render"
         ]
     );
+    // Of the gear's 0.38 N·m a fifth is left, or more.
+    let set = |at: usize| parameters[at]["value"].as_f64().unwrap();
+    let cancelled_nm = set(1) * set(2);
+    assert!(
+        (0.2..0.8 * 0.38).contains(&cancelled_nm) && set(3) == 1.0,
+        "{parameters:?}"
+    );
+    assert!(text.contains("friction-compensation.render=on"), "{text}");
     assert!(json["revision"].as_u64().unwrap() > 1);
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(page.contains("torque constant") && page.contains("<svg"));

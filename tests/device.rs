@@ -57,9 +57,24 @@ fn the_doctor_finds_nothing_wrong() {
 }
 
 #[test]
+fn the_doctor_says_what_is_felt_of_the_gear() {
+    let felt = |arguments: &[&str]| done(&[&["doctor"], arguments].concat());
+    let compensated = felt(&[]);
+    let line = "ok    friction    0.10 of the gear's 0.50 N·m are felt beside the joint\n";
+    assert!(compensated.contains(line), "{compensated}");
+    let off = felt(&["--scene", "weight-in-the-brace"]);
+    let parts = [
+        "0.50 of the gear's 0.50 N·m",
+        "compensation is off",
+        "`crepitus calibrate --apply`",
+    ];
+    assert!(parts.iter().all(|part| off.contains(part)), "{off}");
+}
+
+#[test]
 fn parameters_are_listed_read_and_set() {
     let list: Value = serde_json::from_str(&stdout(&run(&["params", "list", "--json"]))).unwrap();
-    assert_eq!(list.as_array().unwrap().len(), 121);
+    assert_eq!(list.as_array().unwrap().len(), 123);
     assert_eq!(list[4]["name"], "crepitus.static_torque_nm");
     let got = json(&[
         "params",

@@ -129,6 +129,8 @@ pub mod id {
     /// `range.fade_deg`.
     pub const RANGE_FADE: u8 = named("range", "fade_deg");
 
+    /// `friction-compensation.render`.
+    pub const COMPENSATION: u8 = named("friction-compensation", "render");
     /// `motor.supply_v`.
     pub const SUPPLY: u8 = named("motor", "supply_v");
     /// `joint-sensor.fitted`.

@@ -65,6 +65,19 @@ test("parameters: changes are collected, sent as one, and marked", async () => {
   assert.deepEqual([...page.problems, ...viewer.problems], []);
 });
 
+test("friction compensation that is off is said, with what it costs, to those who can switch it on", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  const viewer = await openLive(panel.viewer);
+  await page.getByText("All parameters").click();
+  await page.getByLabel("Search parameters").fill("friction-compensation.render");
+  assert.equal(await page.locator("#friction").textContent(), "");
+  await page.locator('[data-parameter="friction-compensation.render"] select').selectOption("off");
+  await page.getByRole("button", { name: "Apply changes (1)" }).click();
+  await page.locator("#friction", { hasText: "about 0.50 N·m, is felt besides the knee" }).waitFor();
+  assert.equal(await viewer.locator("#friction").textContent(), "");
+});
+
 test("a target speed is shown, judged and scored", async () => {
   const panel = await startPanel();
   const page = await openControlling(panel.teacher);

@@ -52,6 +52,16 @@ export function controlReason() {
   return key ? text(key) : "";
 }
 
+/** What the brace's own friction adds to the knee, as long as its compensation is off. */
+function frictionHint() {
+  const { hello, parameters } = latest;
+  if (!hello || !parameters?.values || isReplay() || !isTeacher()) return "";
+  const values = new Map(parameters.values);
+  const value = (key) => values.get(hello.parameters.find(({ name }) => name === `friction-compensation.${key}`)?.id);
+  if (value("render") !== 0) return "";
+  return text("control.friction", { friction: number(value("friction_nm"), 2) });
+}
+
 function showControls() {
   byId("controls").hidden = isReplay();
   const grouped = new Map();
@@ -64,6 +74,7 @@ function showControls() {
   setText(byId("why"), lines.join(" "));
   setText(byId("take"), text(isController() ? "control.release" : "control.take"));
   setText(byId("zero-hint"), byId("zero").disabled ? "" : text("control.zero-hint"));
+  setText(byId("friction"), frictionHint());
   const holder = latest.holder;
   const who = isController() ? "holder.you" : holder?.taken ? "holder.other" : "holder.nobody";
   const other = latest.status?.other;

@@ -6,12 +6,14 @@ use crate::line::{Line, connect};
 use clap::Args;
 use crepitus_client::{Client, Event, RequestKind};
 use crepitus_connection::device_text;
-use crepitus_protocol::TICKS_PER_S;
+use crepitus_model::parameters::Source;
+use crepitus_model::render::effects::friction_compensation::FrictionCompensationSettings;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::host::Status;
 use crepitus_protocol::measured::{MOTOR_C, SUPPLY_SHARES};
 use crepitus_protocol::parameters::id;
 use crepitus_protocol::telemetry::{NO_CURRENT, SampleFlags};
+use crepitus_protocol::{TICKS_PER_S, Values};
 use serde_json::json;
 use std::time::Duration;
 
@@ -197,7 +199,29 @@ fn motor(
             "zero is not set, which arming needs: `crepitus zero` with the leg straight"
         },
     ));
+    checks.push(fine("friction", friction(&values)));
     Ok(())
+}
+
+/// The part of the gear's friction that the hand feels beside the joint, and how to feel less of it. A brace that is not
+/// calibrated yet has no compensation, and nothing is wrong with it.
+fn friction(values: &Values) -> String {
+    let gear: FrictionCompensationSettings = values.read();
+    let is_on = values.is_on(id::COMPENSATION);
+    let share = if is_on { gear.share } else { 0.0 };
+    let text = format!(
+        "{:.2} of the gear's {:.2} N·m are felt beside the joint",
+        (1.0 - share) * gear.friction_nm,
+        gear.friction_nm
+    );
+    if is_on {
+        text
+    } else {
+        format!(
+            "{text}, as its compensation is off: measure it and switch that on with `crepitus calibrate --apply` and a \
+             weight that swings"
+        )
+    }
 }
 
 fn round_trips(

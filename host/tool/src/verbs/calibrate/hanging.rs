@@ -1,7 +1,7 @@
 //! The motor's torque constant, by a weight that hangs.
 
 use super::finding::{Finding, Verdict};
-use super::friction::FRICTION;
+use super::friction::compensated;
 use super::person::interrupted;
 use super::prepared::{Prepared, all_off};
 use super::pulled::{MOST, Pulled, spring_at};
@@ -107,9 +107,8 @@ pub(super) fn found(client: &mut Client<Line>, weight: &Known) -> Result<Finding
              and compare {TORQUE_CONSTANT}, encoder.gear_ratio and the shunts of the current sensor with their data sheets"
         )));
     }
-    Ok(finding
-        .propose(TORQUE_CONSTANT, constant.value)
-        .propose(FRICTION, found.friction_nm.value))
+    let finding = finding.propose(TORQUE_CONSTANT, constant.value);
+    Ok(compensated(finding, &found.friction_nm))
 }
 
 fn settings(values: &Values) -> Result<DeviceSettings, Failure> {

@@ -2,7 +2,7 @@
 
 use super::finding::{Finding, Verdict};
 use super::results::Change;
-use crepitus_client::values::{full_name, show_number};
+use crepitus_client::values::{full_name, show_value};
 use crepitus_plot::page::{Section, document, figure as drawn, footer, notes, tables, warnings};
 use crepitus_plot::palette::{OBJECT, SHAFT};
 use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Point, Sign, stack};
@@ -38,7 +38,7 @@ pub(super) fn html(
             title: "Parameters".to_owned(),
             rows: changes
                 .iter()
-                .map(|c| (full_name(c.parameter), show_number(c.value)))
+                .map(|c| (full_name(c.parameter), show_value(c.parameter, c.value)))
                 .collect(),
         });
     }

@@ -4,7 +4,7 @@ use super::finding::Finding;
 use super::page;
 use crate::failure::Failure;
 use crate::results::{footer, json_file, svg_files, write as write_files};
-use crepitus_client::values::{full_name, show_number};
+use crepitus_client::values::{full_name, show_value};
 use crepitus_connection::parameters::find;
 use crepitus_files::output::Folder;
 use crepitus_protocol::parameters::{Kind, Parameter};
@@ -71,7 +71,7 @@ pub(super) fn text(findings: &[Finding], changes: &[Change]) -> String {
             text,
             "{}={}",
             full_name(change.parameter),
-            show_number(change.value)
+            show_value(change.parameter, change.value)
         );
     }
     text
