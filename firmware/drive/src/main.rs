@@ -74,7 +74,7 @@ mod app {
     const LINKED: usize = 3;
     const TASKS: usize = 4;
 
-    /// The most bytes that a run of `link` receives, every other tick: 160 in a
+    /// The most bytes that a run of `link` receives, every other tick: 240 in a
     /// millisecond. Comms sends 25, and while a commit is sent 145.
     const RUN_BYTES: usize = 24;
 

@@ -49,8 +49,33 @@ impl Spring {
         f64::from(self.at) / f64::from(PARTS) * self.sight.rad_per_count
     }
 
-    /// The limit towards an asperity at this distance.
-    fn limit_nm(&self, away_rad: f64) -> f64 {
+    /// Whether the asperity of this number is there: patches of a pitch each are counted, not divided.
+    fn is_there(&self, number: i32) -> bool {
+        let TextureSettings {
+            patch_deg,
+            patch_share,
+            ..
+        } = self.settings;
+        if patch_deg == 0.0 {
+            return true;
+        }
+        let all = (patch_deg / self.settings.pitch_deg).round() as i32;
+        let there = ((patch_share * f64::from(all)).round() as i32).max(1);
+        let mut number = number;
+        while number < 0 {
+            number += all;
+        }
+        while number >= all {
+            number -= all;
+        }
+        number < there
+    }
+
+    /// The limit towards the asperity of this number at this distance.
+    fn limit_nm(&self, number: i32, away_rad: f64) -> f64 {
+        if !self.is_there(number) {
+            return self.settings.base_nm;
+        }
         let TextureSettings {
             base_nm, peak_nm, ..
         } = self.settings;
@@ -76,12 +101,13 @@ impl Spring {
                 -i32::from(beyond_rad < 0.0 && !is_noise)
             };
             if passed != 0 {
-                self.snaps += u32::from(self.dragged == way);
+                let crossed = if way > 0 { self.below + 1 } else { self.below };
+                self.snaps += u32::from(self.dragged == way && self.is_there(crossed));
                 self.below += passed;
             }
             let beyond_rad = beyond_rad - f64::from(passed) * self.pitch_rad();
-            let lower_nm = -self.limit_nm(beyond_rad);
-            let upper_nm = self.limit_nm(self.pitch_rad() - beyond_rad);
+            let lower_nm = -self.limit_nm(self.below, beyond_rad);
+            let upper_nm = self.limit_nm(self.below + 1, self.pitch_rad() - beyond_rad);
             let elastic_nm =
                 self.nm + f64::from(way) * part_rad * self.settings.stiffness_nm_per_rad;
             self.nm = elastic_nm.clamp(lower_nm, upper_nm);
@@ -164,7 +190,12 @@ fn an_encoder_that_goes_to_and_fro_over_asperities_meets_each_as_a_spring_would(
         stiffness_nm_per_rad: 400.0,
         ..rough
     };
-    for settings in [rough, fine] {
+    let patches = TextureSettings {
+        patch_deg: 2.4,
+        patch_share: 0.5,
+        ..fine
+    };
+    for settings in [rough, fine, patches] {
         for from in [7, -700, 9_000] {
             // A pitch is known to 2⁻²⁰ counts.
             let snaps = compare::<f64>(settings, from, 1e-7);

@@ -261,6 +261,36 @@ fn texture_snaps_by_the_angle() {
     }
 }
 
+/// Of eight asperities three are there.
+#[test]
+fn texture_in_patches_creaks_and_glides() {
+    let settings = EffectSettings {
+        texture: Some(TextureSettings {
+            irregularity: 0.0,
+            patch_deg: 12.0,
+            patch_share: 0.375,
+            ..TextureSettings::default()
+        }),
+        ..EffectSettings::default()
+    };
+    assert!((settings.texture.unwrap().mean_nm() - (0.1 + 0.375 * 0.09)).abs() < 1e-12);
+    let run = only::<f64>(settings, 0.5).run(2.0, ramp(0.5, 60.0));
+    let snaps = run.times(Word::Snap);
+    // 120 deg are ten patches of three.
+    assert_eq!(snaps.len(), 30, "{snaps:?}");
+    let gaps = snaps
+        .windows(2)
+        .map(|pair| ((pair[1] - pair[0]) * 40.0).round());
+    assert_eq!(gaps.filter(|gap| *gap == 6.0).count(), 10, "{snaps:?}");
+    let least = run
+        .rows
+        .iter()
+        .filter(|row| row.0 > 1.0)
+        .map(|row| row.2)
+        .fold(f64::INFINITY, f64::min);
+    near(least, 0.1, 1e-9);
+}
+
 /// In f32 a slow answer comes as near to the muscle's input as in f64: what it gains in a
 /// tick is then less than the last digit of what it is.
 #[test]

@@ -231,8 +231,15 @@ fn clonus(drawn: &mut Drawn, s: &ClonusSettings, ends: (f64, f64)) {
 }
 
 fn texture(drawn: &mut Drawn, s: &TextureSettings, ends: (f64, f64)) {
-    drawn.band(OUTER, "limits at an asperity", ends, |_| {
-        Limits::both(s.peak_nm)
+    let (all, there) = s.patches();
+    drawn.band(OUTER, "limits at an asperity", ends, |rad| {
+        #[expect(clippy::cast_possible_truncation, reason = "an angle of a knee")]
+        let number = (rad.to_degrees() / s.pitch_deg).round() as i32;
+        Limits::both(if number.rem_euclid(all) < there {
+            s.peak_nm
+        } else {
+            s.base_nm
+        })
     });
     drawn.band(INNER, "limits between asperities", ends, |_| {
         Limits::both(s.base_nm)

@@ -228,7 +228,9 @@ impl ClonusSettings {
 impl TextureSettings {
     /// Mean resistance of a long movement at one speed, N·m, where asperities are even.
     pub fn mean_nm(&self) -> f64 {
-        self.base_nm + 0.5 * self.width_share * (self.peak_nm - self.base_nm)
+        let (all, there) = self.patches();
+        let share = f64::from(there) / f64::from(all);
+        self.base_nm + 0.5 * share * self.width_share * (self.peak_nm - self.base_nm)
     }
 }
 

@@ -7,7 +7,8 @@
 //! ```
 //!
 //! The same click at the same angle there and back: Ω/λ *snaps* a second, mean torque
-//! Tb + w·(Tp − Tb)/2. Stick-slip alone has one pitch.
+//! Tb + w·(Tp − Tb)/2. Stick-slip alone has one pitch. With patches, P apart, of every N = P/λ
+//! asperities only the first M = q·N are there: bone creaks on bone, and then glides again.
 //!
 //! Sources: detection of torque variation follows the spatial, not the temporal
 //! specification (Tan et al.); torques in the paper's range; pitches are estimates.
@@ -86,6 +87,36 @@ settings! {
             default: 200.0,
             meaning: "stiffness of the joint within an asperity, no less than 2(Tp − Tb)/(wλ) (derived)",
         },
+        patch_deg {
+            id: 139 always,
+            symbol: "P",
+            unit: "deg",
+            range: 0.0..=60.0,
+            default: 0.0,
+            meaning: "angle from one patch of asperities to the next, two pitches or more; 0: they are everywhere (estimate)",
+        },
+        patch_share {
+            id: 140 always,
+            symbol: "q",
+            unit: "1",
+            range: 0.05..=1.0,
+            default: 0.4,
+            meaning: "share of that angle in which there are asperities (estimate)",
+        },
+    }
+}
+
+impl TextureSettings {
+    /// Of how many asperities in a row how many are there: all of one without patches.
+    pub fn patches(&self) -> (i32, i32) {
+        let whole = |x: f64| i32::try_from(libm::round(x).whole()).unwrap_or(1);
+        let all = whole(self.patch_deg / self.pitch_deg).max(1);
+        let there = whole(self.patch_share * f64::from(all)).max(1);
+        if self.patch_deg > 0.0 {
+            (all, there)
+        } else {
+            (1, 1)
+        }
     }
 }
 
@@ -108,6 +139,9 @@ pub struct TextureCoefficients<F> {
     /// 1/(wλ), 1/rad.
     per_width: F,
     irregularity: F,
+    /// Of `patch` asperities in a row the first `there` are there.
+    patch: i32,
+    there: i32,
     /// The seed, hashed.
     key: u32,
     stiffness: F,
@@ -119,6 +153,8 @@ pub struct TextureCoefficients<F> {
 struct Asperity<F> {
     place: Position<F>,
     height_nm: F,
+    /// Beside a patch there is none: nothing to snap over.
+    is_there: bool,
 }
 
 /// The asperities below and above the joint.
@@ -141,24 +177,46 @@ struct Beside<F> {
 pub struct Texture<F> {
     with: TextureCoefficients<F>,
     play: Play<F>,
-    /// The number of the last asperity: the one below.
+    /// The number of the last asperity, the one below, and its place in its patch.
     number: i32,
+    place: i32,
     pair: Pair<F>,
     /// Place where the joint was seen last.
     at: Position<F>,
 }
 
 impl<F: Real> TextureCoefficients<F> {
-    /// The asperity of a number, and the one above.
-    fn pair(&self, number: i32) -> Pair<F> {
+    /// The asperity of a number, and the one above; it has this place in its patch.
+    fn pair(&self, number: i32, place: i32) -> Pair<F> {
         Pair {
-            last: self.asperity(number),
-            next: self.asperity(number.wrapping_add(1)),
+            last: self.asperity(number, place),
+            next: self.asperity(number.wrapping_add(1), self.after(place)),
+        }
+    }
+
+    /// The place of an asperity among those of a patch and the gap after it.
+    fn place(&self, number: i32) -> i32 {
+        // A division only where there are patches.
+        match self.patch {
+            1 => 0,
+            patch => number.checked_rem_euclid(patch).unwrap_or(0),
         }
     }
 
     #[inline]
-    fn asperity(&self, number: i32) -> Asperity<F> {
+    fn after(&self, place: i32) -> i32 {
+        let next = place.wrapping_add(1);
+        if next < self.patch { next } else { 0 }
+    }
+
+    #[inline]
+    fn before(&self, place: i32) -> i32 {
+        let place = if place > 0 { place } else { self.patch };
+        place.wrapping_sub(1)
+    }
+
+    #[inline]
+    fn asperity(&self, number: i32, place: i32) -> Asperity<F> {
         #[expect(clippy::cast_sign_loss, reason = "a hash is of the bits")]
         let first = (number as u32).wrapping_mul(2);
         let shift = F::HALF - share(first ^ self.key);
@@ -170,13 +228,19 @@ impl<F: Real> TextureCoefficients<F> {
         )]
         let count = (parts >> PARTS) as i32;
         let rest = (parts & ((1 << PARTS) - 1)) as i32;
+        let is_there = place < self.there;
         Asperity {
             place: Position {
                 count,
                 rest_rad: F::from_count(rest) * self.rad_per_part
                     - self.pitch_rad * (self.irregularity * shift),
             },
-            height_nm: self.height_nm * (F::ONE - self.irregularity * height),
+            height_nm: if is_there {
+                self.height_nm * (F::ONE - self.irregularity * height)
+            } else {
+                F::ZERO
+            },
+            is_there,
         }
     }
 }
@@ -245,6 +309,11 @@ impl<F: Real> Law for Texture<F> {
                          2(peak_nm − base_nm)/(width_share·pitch_deg), the angle in rad",
             });
         }
+        if s.patch_deg > 0.0 && s.patch_deg < 2.0 * s.pitch_deg {
+            return Err(SettingsError::Contradiction {
+                reason: "texture: patch_deg must be 0 or two pitches or more",
+            });
+        }
         Ok(())
     }
 
@@ -269,6 +338,7 @@ impl<F: Real> Law for Texture<F> {
         let rad_per_count = timing.sight.rad_per_count;
         let parts = pitch_rad / rad_per_count * f64::from(1_u32 << PARTS);
         let seed = u32::try_from(s.seed.whole()).unwrap_or(u32::MAX);
+        let (patch, there) = s.patches();
         Ok(TextureCoefficients {
             scale: timing.scale()?,
             base_nm: F::from_f64(s.base_nm),
@@ -279,6 +349,8 @@ impl<F: Real> Law for Texture<F> {
             rad_per_part: F::from_f64(rad_per_count / f64::from(1_u32 << PARTS)),
             per_width: F::from_f64(1.0 / width_rad),
             irregularity: F::from_f64(s.irregularity),
+            patch,
+            there,
             key: seed.wrapping_mul(0x9E37_79B9),
             stiffness: F::from_f64(s.stiffness_nm_per_rad),
             flicker_rad: F::from_f64(timing.sight.flicker_rad),
@@ -290,7 +362,8 @@ impl<F: Real> Law for Texture<F> {
             with: coefficients,
             play: Play::new(),
             number: 0,
-            pair: coefficients.pair(0),
+            place: 0,
+            pair: coefficients.pair(0, 0),
             at: Position::at(0),
         }
     }
@@ -395,7 +468,8 @@ impl<F: Real> Texture<F> {
         let number = turns.abs().whole().min(1 << 30);
         let number = i32::try_from(number).unwrap_or(i32::MAX);
         self.number = if turns < F::ZERO { -number } else { number };
-        self.pair = self.with.pair(self.number);
+        self.place = self.with.place(self.number);
+        self.pair = self.with.pair(self.number, self.place);
         for _ in 0..3 {
             let beside = self.pair.beside(place, rad_per_count);
             if beside.to_next_rad <= F::ZERO {
@@ -414,14 +488,18 @@ impl<F: Real> Texture<F> {
         let Pair { last, next } = self.pair;
         if upwards {
             self.number = self.number.wrapping_add(1);
-            let above = self.with.asperity(self.number.wrapping_add(1));
+            self.place = self.with.after(self.place);
+            let above = self
+                .with
+                .asperity(self.number.wrapping_add(1), self.with.after(self.place));
             self.pair = Pair {
                 last: next,
                 next: above,
             };
         } else {
             self.number = self.number.wrapping_sub(1);
-            let below = self.with.asperity(self.number);
+            self.place = self.with.before(self.place);
+            let below = self.with.asperity(self.number, self.place);
             self.pair = Pair {
                 last: below,
                 next: last,
@@ -455,11 +533,12 @@ impl<F: Real> Texture<F> {
         travel: &Travel<F>,
         on_change: &mut impl Hear<F>,
     ) -> F {
-        let (asperity, beyond_rad) = if upwards {
-            (self.pair.next.place, -beside.to_next_rad)
+        let (crossed, beyond_rad) = if upwards {
+            (&self.pair.next, -beside.to_next_rad)
         } else {
-            (self.pair.last.place, beside.from_last_rad)
+            (&self.pair.last, beside.from_last_rad)
         };
+        let (asperity, is_there) = (crossed.place, crossed.is_there);
         // Noise is waited out, so a joint may have passed it before this travel.
         let start_rad = beyond_rad - travel.delta_rad;
         let place = if (start_rad > F::ZERO) == upwards && start_rad != F::ZERO {
@@ -479,7 +558,7 @@ impl<F: Real> Texture<F> {
         let Limits { lower_nm, upper_nm } = self.pair.limits_at(&self.with, !upwards, &place);
         let after_nm = before_nm.at_most(upper_nm).at_least(lower_nm);
         self.play.put(&place, after_nm, Hold::Elastic);
-        if is_at_limit {
+        if is_at_limit && is_there {
             on_change.hear(Change::at(Word::Snap, fraction, before_nm, after_nm));
         }
         let beside = self.pair.beside(&travel.to, travel.rad_per_count);

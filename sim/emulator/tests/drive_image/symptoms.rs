@@ -122,7 +122,7 @@ pub(crate) const CASES: [Case; 10] = [
     Case {
         name: "texture",
         symptom: "texture",
-        settings: "",
+        settings: "patch_deg = 6.0\npatch_share = 0.5\n",
         phases: &["sliding"],
         most_cycles: 690,
     },
@@ -404,6 +404,24 @@ fn no_sample_is_late_with_ringing_actuator_and_commits() {
         let name = "crepitus, a ringing bone and the actuator";
         late_samples(name, &mut host, actuator::on());
     }
+}
+
+/// Everything that a drive can do at once: no combination is too much, so a commit refuses none for its cycles.
+#[test]
+fn no_sample_is_late_with_everything_at_once_and_commits() {
+    let Some(mut host) = actuator::with_actuator(&[], Flash::Modelled) else {
+        return;
+    };
+    let cases: Vec<&Case> = CASES.iter().take(SYMPTOMS).collect();
+    let symptoms = values_of(&cases);
+    let mut values = actuator::on();
+    for parameter in &parameters::PARAMETERS {
+        if cases.iter().any(|case| case.symptom == parameter.group) {
+            values.set(parameter.id, symptoms.get(parameter.id).expect("a value"));
+        }
+    }
+    values.set(parameters::id::COMPENSATION, 1.0);
+    late_samples("everything", &mut host, values);
 }
 
 /// One commit after another, each at another phase to the tasks and to the joint: no sample is late, none lost.

@@ -64,6 +64,7 @@ files![
     "texture-fine",
     "texture-coarse",
     "texture-bone-on-bone",
+    "texture-creaking",
     "coarse",
     "fine",
     "bone-on-bone",

@@ -236,6 +236,12 @@ pub(crate) fn effects(name: &str, form: &str, random: &mut Random) -> String {
             give("irregularity", random.within(0.0, 0.9));
             give("seed", random.between(0.0, 4e9).floor());
             give("stiffness_nm_per_rad", stiffness);
+            // Half of them have patches.
+            let patch = random.between(2.0, 10.0) * pitch;
+            if random.between(0.0, 1.0) < 0.5 && patch < 60.0 {
+                give("patch_deg", patch);
+                give("patch_share", random.within(0.05, 1.0));
+            }
         }
         _ => panic!("unknown symptom {name}"),
     }

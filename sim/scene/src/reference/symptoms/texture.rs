@@ -3,6 +3,7 @@
 //! ```text
 //! φ_n = λ(n + j(h₂ₙ − ½))        H_n = (Tp − Tb)(1 − j·h₂ₙ₊₁)
 //! h_k = top 24 bits of lowbias32(k xor seed·0x9E3779B9) / 2²⁴
+//! with patches, P > 0, and k = n mod N: H_n = 0 where k ≥ M, N = round(P/λ), M = max(1, round(qN))
 //!  u = Tb + H_next·max(0, 1 − (φ_next − φ)/(wλ))
 //! −ℓ = Tb + H_last·max(0, 1 − (φ − φ_last)/(wλ))
 //! ```
@@ -11,7 +12,7 @@
 //! limit, as it is written: a tremble on an asperity is one snap, though from an
 //! elastic torque, too, the crossing takes what is above the limit behind it. A
 //! touch is no crossing. `flow` and `turn` are not reported. n may be negative; k is it in
-//! two's complement.
+//! two's complement. An asperity that a patch leaves out is none, and is crossed without a snap.
 
 use super::Word as Kind;
 use super::guard::{Guard, When};
@@ -36,6 +37,8 @@ pub(super) struct Texture {
     width: f64,
     /// j.
     irregularity: f64,
+    /// N and M; without patches none.
+    patches: Option<(i64, i64)>,
     /// seed·0x9E3779B9.
     key: u32,
     /// The number of the last asperity: φ_n ≤ φ ≤ φ_(n+1).
@@ -69,6 +72,22 @@ impl Texture {
             x.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&x)
         })?;
         let sigma = reader.positive("stiffness_nm_per_rad", 200.0)?;
+        let apart = reader.at_least_zero("patch_deg", 0.0)?.to_radians();
+        let bare = reader.checked("patch_share", 0.4, "a number above 0, at most 1", |x| {
+            x > 0.0 && x <= 1.0
+        })?;
+        if apart > 0.0 && apart < 2.0 * pitch {
+            return Err(reader.refused(
+                "patch_deg",
+                apart.to_degrees(),
+                "0, or two pitches or more",
+            ));
+        }
+        #[expect(clippy::cast_possible_truncation, reason = "at most 300")]
+        let patches = (apart > 0.0).then(|| {
+            let all = (apart / pitch).round();
+            (all as i64, (bare * all).round().max(1.0) as i64)
+        });
         if peak_nm < base_nm {
             return Err(reader.refused("peak_nm", peak_nm, "base_nm or more"));
         }
@@ -89,6 +108,7 @@ impl Texture {
             pitch,
             width,
             irregularity,
+            patches,
             key: seed.wrapping_mul(0x9E37_79B9),
             last: 0,
             play: Play::closed(sigma),
@@ -113,12 +133,21 @@ impl Texture {
         self.pitch * (place + self.irregularity * (self.share(n.wrapping_mul(2)) - 0.5))
     }
 
+    /// Returns whether asperity n is one: not beside the patches.
+    fn is_there(&self, n: i64) -> bool {
+        match self.patches {
+            Some((all, there)) => n.rem_euclid(all) < there,
+            None => true,
+        }
+    }
+
     /// The limit in front of asperity n, in the direction of `end`.
     fn limit(&self, n: i64, end: End) -> Limit {
         let odd = n.wrapping_mul(2).wrapping_add(1);
+        let height = self.height_nm * (1.0 - self.irregularity * self.share(odd));
         Limit::Ramp {
             base: self.base_nm,
-            height: self.height_nm * (1.0 - self.irregularity * self.share(odd)),
+            height: if self.is_there(n) { height } else { 0.0 },
             peak: end.sign() * self.angle(n),
             width: self.width,
         }
@@ -165,13 +194,18 @@ impl Law for Texture {
             Action::Cross(end) => {
                 let torque_nm = self.play.torque_nm(&self.limits(), at);
                 let is_at_limit = self.play.mode == Mode::Flow(end);
+                let crossed = if end == End::Upper {
+                    self.last + 1
+                } else {
+                    self.last
+                };
                 self.last += if end == End::Upper { 1 } else { -1 };
                 let limit_nm = self.limits().torque_nm(end, at);
                 let falls = end.sign() * (torque_nm - limit_nm) > FELT_NM;
                 if is_at_limit || falls {
                     self.play.change(torque_nm, &self.limits(), at);
                 }
-                is_at_limit.then(|| Kind::Snap.into())
+                (is_at_limit && self.is_there(crossed)).then(|| Kind::Snap.into())
             }
             Action::Play(action) => {
                 self.play.act(action, &self.limits(), at);
