@@ -21,6 +21,7 @@ pub fn html(study: &VibrationStudy, text: &StudyText) -> String {
             p.description { (text.intro) }
         }
         main {
+            (page::figures(|paper| figures(study, paper)))
             @for speed in &study.speeds {
                 section.table {
                     h2 { (speed.speed_rad_s) " rad/s, 15 to 500 Hz" }
@@ -28,7 +29,6 @@ pub fn html(study: &VibrationStudy, text: &StudyText) -> String {
                     @if let Some(draws) = &speed.draws { p { (draws) "." } }
                 }
             }
-            @for figure in figures(study, Paper::Screen) { (page::figure(&figure)) }
             section.table {
                 h2 { "The loop from the actuator to the encoder and back" }
                 p { "Linear, with the joint always in a stick and a gear without friction." }

@@ -52,28 +52,35 @@ fn of(speed: &AtSpeed, step: Step) -> Measured {
 }
 
 #[test]
-fn nine_tenths_of_the_ripple_arrive_where_the_motor_alone_brings_a_thousandth() {
-    for (speed, correlation, most_lag_s) in
-        [(0.1, 0.76, 5e-4), (0.5, 0.95, 5e-4), (1.0, 0.95, 5e-4)]
-    {
+fn the_actuator_brings_what_the_motor_alone_does_not() {
+    for (speed, share, correlation, more_db) in [
+        (0.1, 0.85, 0.55, 15.0),
+        (0.5, 0.9, 0.9, 35.0),
+        (1.0, 0.9, 0.9, 35.0),
+    ] {
         let found = at(speed, &[], 0);
         let actuator = of(&found, Step::Actuator);
         let alone = of(&found, Step::MotorAlone);
-        assert!(actuator.share.unwrap() >= 0.9, "{speed}: {actuator:?}");
-        assert!(alone.share.unwrap().abs() < 5e-3, "{speed}: {alone:?}");
-        assert!(actuator.level_db > alone.level_db + 35.0);
+        assert!(actuator.share.unwrap() >= share, "{speed}: {actuator:?}");
+        assert!(alone.share.unwrap().abs() < 1e-2, "{speed}: {alone:?}");
+        assert!(
+            actuator.level_db > alone.level_db + more_db,
+            "{speed}: {alone:?}"
+        );
         let like = actuator.likeness.unwrap();
         assert!(like.correlation >= correlation, "{speed}: {like:?}");
-        assert!(like.lag_s.abs() <= most_lag_s, "{speed}: {like:?}");
+        assert!(like.lag_s.abs() <= 5e-4, "{speed}: {like:?}");
         let coil = actuator.coil.unwrap();
-        assert!(coil.power_w < 0.06 && coil.excursion_mm < 0.4, "{coil:?}");
+        assert!(coil.power_w < 0.15 && coil.excursion_mm < 0.7, "{coil:?}");
         // Ringing is felt at every speed.
         assert!(of(&found, Step::Ringing).level_db > 25.0);
-        // Where it is wrong, it does little.
+        // Where it is wrong, it does less.
         for wrong in [Step::OnBrace, Step::HandOnLeg] {
             let wrong = of(&found, wrong);
-            assert!(wrong.share.unwrap() < 0.3, "{speed}: {wrong:?}");
-            assert!(wrong.level_db < actuator.level_db - 20.0);
+            assert!(
+                wrong.level_db < actuator.level_db - 10.0,
+                "{speed}: {wrong:?}"
+            );
         }
         // A bare knee at the same gain of one is some 20 dB quieter.
         let bare = of(&found, Step::BareKnee);
@@ -88,15 +95,44 @@ fn nine_tenths_of_the_ripple_arrive_where_the_motor_alone_brings_a_thousandth() 
     }
 }
 
+/// Of the paper's device, which has no shell, the hand on the leg gets what a bare knee gives at low speed, and less than it
+/// could feel at high speed; a soft cuff without compensation brings nothing at either.
 #[test]
-fn without_the_gears_friction_it_is_what_was_estimated() {
-    // The estimate was linear: 0.82 at 0.1 rad/s.
-    let found = at(0.1, &[("effects.drivetrain.friction_nm", "0.0")], 0);
-    let like = of(&found, Step::Actuator).likeness.unwrap();
+fn the_motor_alone_is_felt_at_low_speed_through_a_stiff_seat() {
+    let soft = [
+        ("effects.cuff.stiffness_nm_per_rad", "120.0"),
+        ("effects.cuff.damping_nms_per_rad", "1.0"),
+        ("effects.friction-compensation.share", "0.0"),
+    ];
+    let level = |speed, set| of(&at(speed, set, 0), Step::MotorOnLeg).level_db;
+    let (slow, fast) = (level(0.1, &[][..]), level(1.0, &[]));
+    println!("on the leg: {slow:.1} dB at 0.1 rad/s, {fast:.1} dB at 1 rad/s");
+    let (slow_soft, fast_soft) = (level(0.1, &soft[..]), level(1.0, &soft));
+    println!("through a soft cuff: {slow_soft:.1} dB and {fast_soft:.1} dB");
+    assert!(slow > 0.0 && fast < 0.0, "{slow} {fast}");
+    assert!(
+        slow_soft < -10.0 && fast_soft < -20.0,
+        "{slow_soft} {fast_soft}"
+    );
+}
+
+#[test]
+fn without_the_gears_friction_it_is_as_alike_as_was_estimated() {
+    // The estimate was linear, of a soft cuff: 0.82 at 0.1 rad/s.
+    let soft = |friction| {
+        let set = [
+            ("effects.drivetrain.friction_nm", friction),
+            ("effects.friction-compensation.share", "0.0"),
+            ("effects.crepitus.restart", "\"elastic\""),
+            ("effects.cuff.stiffness_nm_per_rad", "120.0"),
+            ("effects.cuff.damping_nms_per_rad", "1.0"),
+        ];
+        of(&at(0.1, &set, 0), Step::Actuator).likeness.unwrap()
+    };
+    let like = soft("0.0");
     assert!((0.79..0.9).contains(&like.correlation), "{like:?}");
     // With it, less: the friction is what is missing.
-    let found = at(0.1, &[], 0);
-    let with_friction = of(&found, Step::Actuator).likeness.unwrap();
+    let with_friction = soft("0.5");
     assert!(
         with_friction.correlation < like.correlation - 0.02,
         "{with_friction:?}"
@@ -113,7 +149,7 @@ fn with_everything_off_it_stays_within_a_factor() {
         "{draws}"
     );
     assert!(draws.within >= 0.9, "{draws}");
-    assert!(draws.least_correlation > 0.95, "{draws}");
+    assert!(draws.least_correlation > 0.85, "{draws}");
 }
 
 #[test]
@@ -146,8 +182,8 @@ fn what_is_missing_is_named() {
 
 /// Swing of the shaft over the first and over the last part of a run in which the joint
 /// sticks and nobody holds the leg on its stiff cuff: with the whole device's filters, this much more
-/// force of the coil than they believe, a gear like this, and everything so many ticks late.
-fn swings(stronger: f64, gear: &str, late_ticks: usize) -> (f64, f64) {
+/// force of the coil than they believe, a gear like this, a cuff like this, and everything so many ticks late.
+fn swings(stronger: f64, gear: &str, cuff: &str, late_ticks: usize) -> (f64, f64) {
     use crepitus_model::parameters::Tabled;
     use crepitus_model::render::effects::vibration_actuator::{
         VibrationActuator, VibrationActuatorSettings,
@@ -155,9 +191,9 @@ fn swings(stronger: f64, gear: &str, late_ticks: usize) -> (f64, f64) {
     use crepitus_model::render::effects::{DeviceEffect, Timing};
     use crepitus_model::render::position::Sight;
     let text = "version = 1\ntitle = \"loop\"\nduration_s = 1.0\n[motion]\nkind = \"released\"\nfrom_deg = 90.02\n\
-                [solver]\nkind = \"exact-events\"\nstep_s = 5e-5\n[effects.drivetrain]\nGEAR\n[effects.cuff]\nstiffness_nm_per_rad = 300.0\n[effects.limb]\npassive = \"none\"\n\
+                [solver]\nkind = \"exact-events\"\nstep_s = 5e-5\n[effects.drivetrain]\nGEAR\n[effects.cuff]\nCUFF\n[effects.limb]\npassive = \"none\"\n\
                 [effects.shell]\n[effects.reaction-mass]\n";
-    let text = text.replace("GEAR", gear);
+    let text = text.replace("GEAR", gear).replace("CUFF", cuff);
     let has_friction = gear.contains("backlash");
     let scene =
         Scene::parse(Path::new("loop.toml"), &text, &Overrides::default()).expect("allowed");
@@ -225,7 +261,7 @@ fn margins_are_of_what_the_device_believes() {
 
 #[test]
 fn the_loop_oscillates_where_its_margin_ends() {
-    use crepitus_study::vibration::loop_gain::margins;
+    use crepitus_study::vibration::loop_gain::{STIFF_NM_PER_RAD, margins};
     let margins = margins(&scene(0.5, &[]));
     let worst = margins
         .iter()
@@ -234,26 +270,49 @@ fn the_loop_oscillates_where_its_margin_ends() {
     println!("worst loop: {worst:?}");
     assert!((1.9..2.6).contains(&worst.stable_to), "{worst:?}");
     let free = "friction_nm = 0.0\nload_loss = 0.0";
-    let (first, last) = swings(0.85 * worst.stable_to, free, 0);
+    let cuff = "stiffness_nm_per_rad = 300.0";
+    let (first, last) = swings(0.85 * worst.stable_to, free, cuff, 0);
     assert!(last < first, "within: {first} {last}");
-    let (first, last) = swings(1.25 * worst.stable_to, free, 0);
+    let (first, last) = swings(1.25 * worst.stable_to, free, cuff, 0);
     assert!(last > first, "beyond: {first} {last}");
     // A fifth of the gear's friction and its backlash keep it quiet beyond gain 2.5, and at 2 four
     // ticks late.
     let gear = "friction_nm = 0.1\n[effects.backlash]";
     for (gain, late_ticks) in [(2.6, 0), (2.0, 4)] {
-        let (first, last) = swings(gain, gear, late_ticks);
+        let (first, last) = swings(gain, gear, cuff, late_ticks);
         println!("gain {gain}, {late_ticks} ticks late, with friction: {first:e} {last:e} rad/s");
         assert!(
             first > 0.05 && last < 1e-3 * first,
             "{gain}: {first} {last}"
         );
     }
-    // Over everything that is listed gain 2 is stable, also four ticks late.
+    // On every soft cuff gain 2 is stable, also four ticks late, and on the stiff seat in every hand.
     for margin in &margins {
+        let is_stiff = margin.cuff_nm_per_rad == STIFF_NM_PER_RAD;
+        if is_stiff && margin.hand == "nobody" {
+            // What is left of the gear's friction keeps it quiet, see below.
+            assert!(margin.stable_to < 1.0, "{margin:?}");
+            continue;
+        }
         assert!(margin.stable_to > 2.0, "{margin:?}");
-        let is_held = margin.hand != "nobody" || margin.cuff_nm_per_rad < 300.0;
+        let is_held = !is_stiff && (margin.hand != "nobody" || margin.cuff_nm_per_rad < 300.0);
         assert!(!is_held || margin.largest < 0.4, "{margin:?}");
         assert!(!is_held || margin.stable_to > 2.5, "{margin:?}");
+    }
+}
+
+/// On the paper's seat with nobody at the shell a leg swings on the joint's stick without any damping: there what a
+/// compensation leaves of the gear's friction decides.
+#[test]
+fn on_a_stiff_seat_what_is_left_of_the_friction_keeps_the_loop_quiet() {
+    let cuff = "stiffness_nm_per_rad = 2e4\ndamping_nms_per_rad = 10.0";
+    let gear = "friction_nm = 0.1\n[effects.backlash]";
+    for (gain, late_ticks) in [(1.0, 0), (1.0, 4)] {
+        let (first, last) = swings(gain, gear, cuff, late_ticks);
+        println!("gain {gain}, {late_ticks} ticks late: {first:e} {last:e} rad/s");
+        assert!(
+            first > 0.05 && last < 1e-3 * first,
+            "{gain}: {first} {last}"
+        );
     }
 }

@@ -165,11 +165,9 @@ fn out(plan: &Plan) -> PathBuf {
 fn text(study: &VibrationStudy) -> StudyText {
     StudyText {
         title: "What the hand gets".to_owned(),
-        intro: format!(
-            "The fast part of the joint's torque at the hand that grips the shell, at {} speeds.",
-            study.speeds.len()
-        ),
+        intro: table::answer(study),
         notes: vec![
+            "T/r: the force that a knee with the joint's torque T gives at the hand's lever r.".to_owned(),
             "All of it is simulated. The hand's numbers are estimates, and the threshold is known to ±10 dB.".to_owned(),
         ],
         tables: Vec::new(),

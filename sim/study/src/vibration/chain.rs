@@ -14,6 +14,8 @@ crepitus_model::named! {
         BareKnee => "a bare diseased knee",
         /// The device, its actuator silent.
         MotorAlone => "the motor alone",
+        /// The device, its actuator silent, with the hand on the leg beside the shell: as the paper's was.
+        MotorOnLeg => "the motor alone, the hand on the leg",
         /// The motor and the actuator, with the ringing of a bone on the motor if the scene has one.
         Actuator => "and the actuator",
         /// The motor and the actuator, with the ringing of a bone on the actuator.
@@ -38,6 +40,10 @@ impl Step {
             Self::MotorAlone => {
                 drop_effect(&mut scene, "vibration-actuator");
                 choose(&mut scene, "bone-shaping", 0);
+            }
+            Self::MotorOnLeg => {
+                scene = Self::MotorAlone.free(&scene);
+                choose(&mut scene, "shell", 1);
             }
             Self::Actuator => choose(&mut scene, "bone-shaping", 0),
             Self::Ringing => {

@@ -39,8 +39,12 @@ const MOTOR_LAG_S: f64 = 0.21e-3;
 /// Delay of the voltage: it is held over the tick after the one that computed it.
 const COIL_DELAY_TICKS: f64 = 1.5;
 
-/// Cuffs that are tried, N·m/rad.
+/// Soft cuffs that are tried, N·m/rad.
 pub const CUFFS: [f64; 3] = [60.0, 120.0, 300.0];
+
+/// Stiffness of the seat of the paper's brace, N·m/rad, and its damping, N·m·s/rad, as in the scene `fig8`.
+pub const STIFF_NM_PER_RAD: f64 = 2e4;
+const STIFF_DAMPING_NMS_PER_RAD: f64 = 10.0;
 
 /// Ticks by which everything may be late besides.
 pub const LATE_TICKS: [u32; 2] = [0, 4];
@@ -69,7 +73,7 @@ pub struct Margin {
 pub fn margins(scene: &Scene) -> Vec<Margin> {
     let mut margins = Vec::new();
     for late_ticks in LATE_TICKS {
-        for cuff_nm_per_rad in CUFFS {
+        for cuff_nm_per_rad in CUFFS.into_iter().chain([STIFF_NM_PER_RAD]) {
             for hand in HANDS {
                 margins.push(margin(scene, hand, cuff_nm_per_rad, late_ticks));
             }
@@ -114,6 +118,16 @@ fn number(scene: &Scene, effect: &crepitus_plant::effect::Effect, key: &str) -> 
         .unwrap_or(f64::NAN)
 }
 
+/// Damping of a cuff of this stiffness, whatever the scene's is.
+fn damping_nms_per_rad(stiffness_nm_per_rad: f64) -> f64 {
+    if stiffness_nm_per_rad >= STIFF_NM_PER_RAD {
+        return STIFF_DAMPING_NMS_PER_RAD;
+    }
+    let mut specs = cuff::EFFECT.parameters.iter();
+    let spec = specs.find(|spec| spec.key == "damping_nms_per_rad");
+    spec.map_or(f64::NAN, |spec| spec.default)
+}
+
 impl Linear {
     fn of(scene: &Scene, grip: &str, cuff_nm_per_rad: f64) -> Self {
         let of = |effect, key| number(scene, effect, key);
@@ -146,7 +160,7 @@ impl Linear {
             arm: of(&hand::EFFECT, "mass_kg") * hand_square,
             mass_kg,
             lever_m: actuator.lever_m,
-            cuff: (cuff_nm_per_rad, of(&cuff::EFFECT, "damping_nms_per_rad")),
+            cuff: (cuff_nm_per_rad, damping_nms_per_rad(cuff_nm_per_rad)),
             leg_damping: of(&limb::EFFECT, "damping_nms_per_rad"),
             seat: (
                 of(&shell::EFFECT, "seat_stiffness_n_per_m") * square,
