@@ -7,6 +7,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::figure::{Chart, Figure, Key, Sign};
 use crate::palette::{self, Ink};
+use crate::paper::{Column, Paper};
 
 const LAYOUT: &str = include_str!("page.css");
 
@@ -49,7 +50,13 @@ pub fn document_in(
     page.into_string()
 }
 
-/// Tables of names and values, side by side where there is room.
+/// Width up to which a chart fits a phone, CSS pixels.
+const PHONE: f64 = 520.0;
+
+/// Rows from which on a table of names and values is folded: nobody reads so many before the figures.
+const FOLDED: usize = 16;
+
+/// Tables of names and values, side by side where there is room; long ones are folded.
 pub fn tables(sections: &[Section]) -> Markup {
     html! {
         @if !sections.is_empty() {
@@ -90,31 +97,67 @@ pub fn notes(notes: &[String]) -> Markup {
     }
 }
 
-/// A scrolling box for wide content; focusable for the keyboard.
+/// A scrolling box for wide content; focusable for the keyboard. A phone, which shows no bar, says that it scrolls.
 pub fn scrolling(label: &str, content: &Markup) -> Markup {
+    html! {
+        (fitting(label, content))
+        p.sideways { "Wider than a phone: swipe it sideways." }
+    }
+}
+
+/// A box for content that fits.
+fn fitting(label: &str, content: &Markup) -> Markup {
     html! { div.box tabindex="0" role="group" aria-label=(label) { (content) } }
+}
+
+/// Figures as they are drawn for a medium. Those that have another layout for a phone are there twice, and the page shows
+/// the one that fits.
+pub fn figures(draw: impl Fn(Paper) -> Vec<Figure>) -> Markup {
+    let narrow = draw(Paper::Print(Column::One));
+    html! {
+        @for (wide, narrow) in draw(Paper::Screen).iter().zip(&narrow) { (laid_out(wide, Some(narrow))) }
+    }
 }
 
 /// A figure.
 pub fn figure(figure: &Figure) -> Markup {
+    laid_out(figure, None)
+}
+
+fn laid_out(figure: &Figure, narrow: Option<&Figure>) -> Markup {
+    let narrow = narrow.filter(|narrow| is_for_a_phone(narrow) && !is_for_a_phone(figure));
     html! {
         section.figure {
             h2 { (figure.title) }
             @if !figure.legend.is_empty() {
                 ul.legend { @for entry in &figure.legend { (key(*entry)) } }
             }
-            div.charts { @for part in &figure.charts { (chart(part)) } }
+            div.charts.wide[narrow.is_some()] { @for part in &figure.charts { (chart(part)) } }
+            @if let Some(narrow) = narrow {
+                div.charts.narrow { @for part in &narrow.charts { (chart(part)) } }
+            }
             p.caption { (figure.caption) }
         }
     }
 }
 
+/// Returns whether all charts fit a phone once they are scaled to its width, with letters that can be read.
+fn is_for_a_phone(figure: &Figure) -> bool {
+    figure.charts.iter().all(|chart| chart.svg.width <= PHONE)
+}
+
 fn chart(chart: &Chart) -> Markup {
     let class = if chart.half { "half" } else { "full" };
+    let svg = html! { (chart.svg) };
+    let shown = if chart.svg.width <= PHONE {
+        fitting("Chart", &svg)
+    } else {
+        scrolling("Chart", &svg)
+    };
     html! {
         figure class=(class) {
             @if let Some(heading) = &chart.heading { figcaption { (heading) } }
-            (scrolling("Chart", &html! { (chart.svg) }))
+            (shown)
         }
     }
 }
@@ -136,16 +179,20 @@ fn key(key: Key) -> Markup {
 }
 
 fn section(section: &Section) -> Markup {
-    html! {
-        section.table {
-            h2 { (section.title) }
-            table {
-                tbody {
-                    @for (name, value) in &section.rows {
-                        tr { th scope="row" { (name) } td { (value) } }
-                    }
+    let table = html! {
+        table {
+            tbody {
+                @for (name, value) in &section.rows {
+                    tr { th scope="row" { (name) } td { (value) } }
                 }
             }
+        }
+    };
+    html! {
+        @if section.rows.len() < FOLDED {
+            section.table { h2 { (section.title) } (table) }
+        } @else {
+            details.table { summary { (section.title) " (" (section.rows.len()) ")" } (table) }
         }
     }
 }

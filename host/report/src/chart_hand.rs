@@ -72,10 +72,12 @@ fn caption(plant: &Plant, has_fast: bool) -> String {
         format!(
             " Below it the same without its slow part, {}: what a moving mean follows is taken \
              away, (4·mean over {} s − mean over {} s)/3, and with it the weight of a leg that is \
-             moved. What vibrates at 10 Hz and more keeps its size to within a fifth.",
+             moved; {} s at either end have no such mean. What vibrates at 10 Hz and more keeps its size to \
+             within a fifth.",
             range(&plant.fast),
             rounded(plant.mean_s),
             rounded(2.0 * plant.mean_s),
+            rounded(plant.mean_s),
         )
     } else {
         String::new()

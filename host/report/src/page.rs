@@ -14,7 +14,6 @@ use crate::{
 
 /// The report as one HTML page, complete in itself.
 pub fn html(text: &Text, figures: &Figures) -> String {
-    let drawn = draw(figures, Paper::Screen);
     let balance = figures.balance.as_ref().and_then(balance_table::table);
     let mut sections = overlay::sections(&figures.comparisons);
     sections.extend(examined::sections(figures));
@@ -34,10 +33,10 @@ pub fn html(text: &Text, figures: &Figures) -> String {
         }
         (page::warnings(warned, &text.warnings))
         main {
-            @if drawn.is_empty() {
+            @if figures.rows < 2 {
                 p { "There are too few rows to draw anything." }
             }
-            @for drawn in &drawn { (page::figure(drawn)) }
+            (page::figures(|paper| draw(figures, paper)))
             (left_out(figures))
             @if let Some(table) = &balance { (table) }
             (page::tables(&sections))

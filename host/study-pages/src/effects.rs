@@ -37,9 +37,10 @@ fn figures(study: &EffectsStudy, paper: Paper) -> Vec<Figure> {
     let stories = felt
         .into_iter()
         .chain(story::build_up::story(&study.build_up_torques));
-    let charts = influence::figure(study, paper)
+    // What is felt first.
+    let charts = bands::figure(study)
         .into_iter()
-        .chain(bands::figure(study));
+        .chain(influence::figure(study, paper));
     charts
         .chain(stories.map(|story| story::figure(&story, paper)))
         .collect()

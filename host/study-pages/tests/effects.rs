@@ -18,7 +18,7 @@ use crepitus_study_pages::effects::{html, pictures};
 use crepitus_study_pages::{Column, Paper, Section, StudyText};
 use markup::{
     assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, assert_printable,
-    charts, count,
+    charts, count, on_a_desk,
 };
 
 fn ran(rms_nm: f64, ns: f64) -> Outcome {
@@ -173,7 +173,7 @@ fn page(name: &str, study: &EffectsStudy, text: &StudyText) -> String {
     for chart in charts(&page) {
         assert!(assert_labels_inside(&chart) > 3);
     }
-    page
+    on_a_desk(&page)
 }
 
 #[test]
@@ -294,7 +294,7 @@ fn pictures_are_documents() {
     }
     let pictures = pictures(&study(), Paper::Screen);
     let names: Vec<&str> = pictures.iter().map(|p| p.name.as_str()).collect();
-    assert_eq!(names, ["influence-and-cost", "bands", "hand-torque"]);
+    assert_eq!(names, ["bands", "influence-and-cost", "hand-torque"]);
     for picture in &pictures {
         assert_drawn(&picture.svg);
         assert!(picture.svg.contains("xmlns=\"http://www.w3.org/2000/svg\""));

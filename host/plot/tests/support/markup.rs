@@ -204,3 +204,15 @@ pub fn assert_printable(picture: &crepitus_plot::Picture) {
         }
     }
 }
+
+/// The page without the charts that a phone shows in place of wide ones.
+pub fn on_a_desk(page: &str) -> String {
+    let mut parts = page.split("<div class=\"charts narrow\">");
+    let mut desk = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (_, rest) = part.split_once("<p class=\"caption\">").expect("a caption");
+        desk += "<p class=\"caption\">";
+        desk += rest;
+    }
+    desk
+}

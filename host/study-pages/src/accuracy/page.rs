@@ -55,15 +55,15 @@ pub(crate) fn html(results: &Results, text: &StudyText) -> String {
     page::document(&text.title, LAYOUT, &[], &body)
 }
 
-/// The table of the device's tick, the diagrams, and what is in none.
+/// The diagrams, the table of the device's tick, and what is in none.
 fn diagrams(study: &Study, pair: &Pair) -> Markup {
     let figures = Measure::ALL
         .into_iter()
         .map(|measure| figure(study, pair, measure));
     let figures = figures.chain(target::figure(study, pair));
     html! {
-        (tick_table::table(study, pair))
         @for figure in figures { (page::figure(&figure)) }
+        (tick_table::table(study, pair))
         (left_out::table(study, pair))
     }
 }

@@ -4,7 +4,7 @@ use crepitus_study::effects::EffectsStudy;
 use maud::html;
 
 use super::{figures, smallest, table};
-use crate::{Paper, StudyText};
+use crate::StudyText;
 use crepitus_plot::page;
 
 /// The page looks like that of the accuracy study, with a wider table.
@@ -23,8 +23,8 @@ pub(super) fn html(study: &EffectsStudy, text: &StudyText) -> String {
         (page::warnings("Before you believe the numbers", &study.warnings))
         main {
             @if let Some(answer) = &study.answer { (smallest::section(answer)) }
+            (page::figures(|paper| figures(study, paper)))
             (table::table(study))
-            @for figure in figures(study, Paper::Screen) { (page::figure(&figure)) }
             (page::tables(&text.tables))
             (page::notes(&text.notes))
         }

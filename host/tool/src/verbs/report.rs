@@ -188,7 +188,7 @@ pub(super) fn write_into(
     let summary = analysis.finish();
     let text = Text {
         title: recording.metadata().title.clone(),
-        description: None,
+        description: Some(tables::first_sentences(&summary)),
         warnings: summary.warnings.clone(),
         sections: tables::sections(&summary, recording.books(), &changed_at_s),
         footer: footer(),
@@ -406,7 +406,8 @@ mod tests {
         assert!(both.contains("Ts") && both.contains("broke loose"));
         values.set(id::CREPITUS, 0.0);
         let alone = page_of(&values, blocks());
-        for part in [beats, "Beats of clonus", "Torque of model and motor"] {
+        let felt = "with the motor on, the knee's torque went from 0 to 1.5 N·m";
+        for part in [beats, "Beats of clonus", "Torque of model and motor", felt] {
             assert!(alone.contains(part), "{part}");
         }
         for part in ["Ts", "broke loose", "imaginary object", "rendered together"] {
@@ -449,6 +450,10 @@ mod tests {
     fn a_recording_without_a_gap_has_none_drawn() {
         let page = page(&[(1_000, 1, 200)]);
         assert!(!page.contains(BLANK) && !page.contains(RESTARTED));
+        // The first sentences.
+        let first =
+            "The motor was off all the time: nothing was rendered. All 4000 samples are here.";
+        assert!(page.contains(first));
     }
 
     #[test]
@@ -463,6 +468,7 @@ mod tests {
     fn samples_missing_before_the_first_one_are_drawn() {
         let page = page(&[(3_000, 1, 200)]);
         assert!(page.contains("2000 samples, 0.1000 s: lost on the way"));
+        assert!(page.contains("2000 of 6000 samples are missing."));
         assert!(page.contains(BLANK) && !page.contains(RESTARTED));
     }
 

@@ -1,6 +1,7 @@
 //! The tables of a recording's report.
 
 use crate::sections::{counts, section, torque_section};
+use crepitus_plot::number::{count, rounded};
 use crepitus_recording::{Books, Controller, ParameterSet, RecordingSummary, seconds};
 use crepitus_report::Section;
 use serde_json::Value;
@@ -31,6 +32,31 @@ pub(super) fn sections(s: &RecordingSummary, books: &Books, changed_at_s: &[f64]
         sections.push(parameters(set, (n > 0).then_some(*at_s)));
     }
     sections
+}
+
+/// Sentences on what was felt, and on whether all of it is here.
+pub(super) fn first_sentences(s: &RecordingSummary) -> String {
+    let felt = match &s.model_torque {
+        Some(torque) => format!(
+            "In {:.1} s with the motor on, the knee's torque went from {} to {} N·m, with the leg at up to {:.0} °/s{}.",
+            s.armed_s,
+            rounded(torque.min_nm),
+            rounded(torque.max_nm),
+            s.fastest_rad_s.to_degrees(),
+            match s.breaks {
+                0 => String::new(),
+                n => format!(", and it broke loose {n} times"),
+            }
+        ),
+        None => "The motor was off all the time: nothing was rendered.".to_owned(),
+    };
+    let t = &s.telemetry;
+    let lost = t.produced.saturating_sub(t.received) + s.missing_at_end;
+    let all = count(t.produced + s.missing_at_end);
+    match lost {
+        0 => format!("{felt} All {all} samples are here."),
+        _ => format!("{felt} {} of {all} samples are missing.", count(lost)),
+    }
 }
 
 /// Missing samples come first.
