@@ -19,7 +19,7 @@ figure clasp-knife-examination clasp-knife-1 disorder-clasp-knife
 figure clonus-hold clonus-2 disorder-clonus
 figure texture-there-and-back texture-1 disorder-texture
 
-cargo run --profile dist --features emulator --quiet -- accuracy --target --pictures --out target/figures/accuracy >target/figures/accuracy.txt
+cargo run --profile dist --features emulator --quiet -- accuracy --target --all --pictures --out target/figures/accuracy >target/figures/accuracy.txt
 for picture in frequency-f64 frequency-f32 tick-torque-f32; do
     measure=${picture%-*} precision=${picture##*-}
     image=docs/images/accuracy-${picture#tick-}.svg
@@ -27,12 +27,15 @@ for picture in frequency-f64 frequency-f32 tick-torque-f32; do
     echo "$image"
 done
 
+cp target/figures/accuracy/cycles.csv sim/study/src/accuracy/target/cycles.csv
+echo sim/study/src/accuracy/target/cycles.csv
 for convention in frozen physical; do
     cp "target/figures/accuracy/target-constant-0-988-$convention-f32.svg" "docs/images/accuracy-target-$convention.svg"
     echo "docs/images/accuracy-target-$convention.svg"
 done
 # The tables go between their marks: each is what follows its heading.
 awk 'NR == FNR { if (/^The other symptoms/) which = "symptoms"
+                 if (/^The command of the vibration actuator/) which = "actuator"
                  if (/^A step on the target/) which = "target"
                  if (/^\|/) table[which] = table[which] $0 "\n"; next }
      /<!-- end of the table -->/ { printf "%s\n", table[inside]; inside = "" }
@@ -46,11 +49,11 @@ echo docs/accuracy.md
 cargo run --profile dist --features emulator --quiet -- stability --pictures --out target/figures/stability >/dev/null
 cp target/figures/stability/matrix.svg docs/images/stability-matrix.svg
 echo docs/images/stability-matrix.svg
-for story in implicit-euler restick-rules parameter-change turn-back-guard; do
+for story in three-solvers implicit-euler restick-rules parameter-change turn-back-guard; do
     cp "target/figures/stability/$story.svg" "docs/images/$story.svg"
     echo "docs/images/$story.svg"
 done
-cargo run --profile dist --features emulator --quiet -- stability --coupled --pictures --out target/figures/coupled >target/figures/coupled.txt
+cargo run --profile dist --features emulator --quiet -- stability --coupled --all --pictures --out target/figures/coupled >target/figures/coupled.txt
 cp target/figures/coupled/z-width.svg docs/images/z-width.svg
 echo docs/images/z-width.svg
 cargo run --profile dist --features emulator --quiet -- stability --list --long >docs/hard-cases.md
@@ -63,7 +66,7 @@ echo docs/images/hand-spectrum.svg
 
 # The numbers of the page about effects are what these print.
 for scene in fig8 fig9; do
-    cargo run --profile dist --features emulator --quiet -- effects "$scene" --pictures --out "target/figures/effects-$scene"
+    cargo run --profile dist --features emulator --quiet -- effects "$scene" --all --pictures --out "target/figures/effects-$scene"
     cp "target/figures/effects-$scene/build-up.svg" "docs/images/build-up-${scene%%-*}.svg"
     echo "docs/images/build-up-${scene%%-*}.svg"
 done
@@ -71,6 +74,15 @@ cargo run --profile dist --features emulator --quiet -- effects tardieu-fast --o
     --set effects.range-limit.flexion_limit_deg=75 --set effects.lead-pipe.torque_nm=1.2 --set effects.cogwheel.torque_nm=2 \
     --set effects.spasticity.form=catch --set effects.clasp-knife.onset_deg=30 --set effects.clonus.hold_deg=60 \
     --set effects.texture.pitch_deg=1.5
+
+# The page about effects: what arrives behind which seat of the brace, by the Python package.
+if python3 -c 'import crepitus, matplotlib' 2>/dev/null; then
+    python3 python/examples/transmission.py target/figures >/dev/null
+    cp target/figures/transmission.svg docs/images/transmission.svg
+    echo docs/images/transmission.svg
+else
+    echo "left out: docs/images/transmission.svg, which needs Python: pip install ./python matplotlib" >&2
+fi
 
 # The page about sweeps: the indices of every parameter, by the Python package and SALib.
 if python3 -c 'import crepitus, SALib, matplotlib' 2>/dev/null; then

@@ -49,6 +49,17 @@ fn a_study_becomes_three_files() {
         "{text}"
     );
     assert!(text.contains("report.html"), "{text}");
+    assert!(text.lines().count() <= 25, "{text}");
+    let answer = text.split("\n\n").next().unwrap().replace('\n', " ");
+    for part in [
+        "At the device's tick of 50 µs (physical, f32, worst of one scene) the cheapest solver, ",
+        "; exact events take ",
+        "On the controller: ",
+        "(modelled cycles, 0 wait states; not measured on hardware)",
+        "A torque that is held for 50 µs is off by ",
+    ] {
+        assert!(answer.contains(part), "{part}: {text}");
+    }
 
     let (header, rows) = csv(&out.join("points.csv"));
     assert_eq!(
@@ -212,6 +223,7 @@ fn without_a_rate_the_longest_steps_are_printed() {
         "frequency=1e-6",
         "--precision",
         "f64",
+        "--all",
         "--quick",
         "--scene",
         scene.to_str().unwrap(),
@@ -380,6 +392,7 @@ fn the_target_adds_cycles_to_points_summary_and_report() {
     let (scene, folder) = (scene.to_str().unwrap(), out.to_str().unwrap());
     let output = accuracy(&[
         "--target",
+        "--all",
         "--quick",
         "--steps",
         "1e-4,5e-5",
@@ -422,10 +435,57 @@ fn the_target_adds_cycles_to_points_summary_and_report() {
     assert_eq!(target["label"], label);
     // Four rungs, the check, the renderer, the encoder, ten effects and four of them in
     // their other form, the current loop.
-    assert_eq!(target["rows"].as_array().unwrap().len(), 22);
+    let rows = target["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 22);
+    // What takes as long in every step is as on record; CREPITUS_LONG compares all of it.
+    let record = support::repository().join("sim/study/src/accuracy/target/cycles.csv");
+    let (header, record) = csv(&record);
+    let place = |name: &str| header.iter().position(|h| h == name).unwrap();
+    let mut compared = 0;
+    for row in record
+        .iter()
+        .filter(|row| number(&row[place("mean_cycles")]) == number(&row[place("worst_cycles")]))
+    {
+        let found = rows.iter().find(|found| {
+            let form = found["form"].as_str().unwrap_or_default();
+            found["subject"] == row[place("subject")] && form == row[place("form")]
+        });
+        let (found, recorded) = (
+            found.unwrap()["mean_cycles"].as_f64().unwrap(),
+            number(&row[place("mean_cycles")]),
+        );
+        assert_eq!(
+            found, recorded,
+            "docs/figures.sh makes the record again: {row:?}"
+        );
+        compared += 1;
+    }
+    assert!(compared >= 4, "{compared}");
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.contains("On the device’s core") || report.contains("On the device's core"));
     assert!(report.contains(label));
+}
+
+#[test]
+fn the_record_is_what_the_target_does() {
+    if std::env::var_os("CREPITUS_LONG").is_none() {
+        return;
+    }
+    let home = tempfile::tempdir().unwrap();
+    let out = home.path().join("study");
+    let output = accuracy(&[
+        "--target",
+        "--steps",
+        "5e-5",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    if has_no_target(&output) {
+        return;
+    }
+    let record = support::repository().join("sim/study/src/accuracy/target/cycles.csv");
+    let read = |file: &Path| fs::read_to_string(file).unwrap();
+    assert_eq!(read(&out.join("cycles.csv")), read(&record));
 }
 
 #[test]

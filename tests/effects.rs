@@ -75,19 +75,41 @@ fn a_study_is_what_single_runs_say() {
     let has = ["crepitus", "drivetrain", "friction-compensation", "limb"];
     let file = scene(home.path(), "knee", &has);
     let out = home.path().join("study");
-    let output = effects(&[file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    let files = [file.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let output = effects(&[&files[..], &["--all"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(names(&out), FILES);
     let text = stdout(&output);
+    let count = EFFECTS.len();
     for part in [
+        &format!("4 of {count} effects run: "),
+        &format!(
+            "The other {} are not built: no state, no instruction.",
+            count - 4
+        ),
+        "Between 10 and 450 Hz the hand feels ",
+        "Without friction-compensation that is ",
         "A short sine: 6000 ticks of 50 µs",
         "without drivetrain (and friction-compensation)",
         "with backlash",
-        "limb changes the torque at the hand most",
         "report.html",
     ] {
         assert!(text.contains(part), "{part}: {text}");
     }
+    let first = stdout(&effects(&[&files[..], &["--force"]].concat()));
+    assert!(
+        first.starts_with(&format!("4 of {count} effects run: ")) && first.lines().count() <= 25,
+        "{first}"
+    );
+    let place = |what: &str| {
+        first
+            .find(what)
+            .unwrap_or_else(|| panic!("{what}: {first}"))
+    };
+    assert!(
+        place("without friction-compensation") < place("without crepitus"),
+        "by what vibrates: {first}"
+    );
 
     let (header, rows) = csv(&out.join("effects.csv"));
     assert_eq!(
@@ -143,6 +165,28 @@ fn a_study_is_what_single_runs_say() {
 }
 
 #[test]
+fn the_book_has_the_build_up_of_both_figures() {
+    let home = tempfile::tempdir().unwrap();
+    let book = fs::read_to_string(support::repository().join("docs/effects.md")).unwrap();
+    for scene in ["fig8", "fig9"] {
+        let out = home.path().join(scene);
+        let text = stdout(&effects(&[scene, "--all", "--out", out.to_str().unwrap()]));
+        let table: Vec<&str> = text
+            .lines()
+            .skip_while(|line| !line.contains("ripple, mN·m pp"))
+            .collect();
+        let rows = table.iter().take_while(|line| !line.is_empty());
+        assert_eq!(rows.clone().count(), 8, "{scene}: {text}");
+        for row in rows {
+            assert!(
+                book.contains(row),
+                "{scene}: docs/effects.md has another line than\n{row}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_tolerance_names_the_smallest_set() {
     let home = tempfile::tempdir().unwrap();
     let has = ["crepitus", "encoder", "drivetrain", "limb"];
@@ -186,6 +230,7 @@ fn a_tolerance_names_the_smallest_set() {
 
     let output = effects(&arguments);
     let text = stdout(&output);
+    assert!(text.lines().count() <= 25, "{text}");
     assert!(
         text.contains("The smallest set that stays within it: "),
         "{text}"
@@ -229,7 +274,14 @@ fn pictures_need_a_scene() {
 
 #[test]
 fn without_a_scene_the_table_of_effects_is_printed() {
-    let output = effects(&[]);
+    let short = stdout(&effects(&[]));
+    assert!(short.lines().count() <= 25, "{short}");
+    assert!(
+        EFFECTS
+            .iter()
+            .all(|effect| short.contains(effect.name) && short.contains(effect.adds))
+    );
+    let output = effects(&["--all"]);
     assert_eq!(output.status.code(), Some(0));
     let text = stdout(&output);
     let list = json(&effects(&["--json"]));

@@ -41,7 +41,7 @@ fn cells(folder: &Path) -> (Vec<String>, Vec<Vec<String>>) {
 fn one_case_is_printed_in_full_and_becomes_three_files() {
     let home = tempfile::tempdir().unwrap();
     let out = home.path().join("one");
-    let output = stability(&out, &["--case", "reversal-in-stick"]);
+    let output = stability(&out, &["--case", "reversal-in-stick", "--all"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(names(&out), ["cases.csv", "report.html", "summary.json"]);
     let text = stdout(&output);
@@ -65,9 +65,9 @@ fn one_case_is_printed_in_full_and_becomes_three_files() {
          detail"
     );
     let printed = text.lines().filter(|line| {
-        [" holds (", " degrades", " fails"]
-            .iter()
-            .any(|verdict| line.contains(verdict))
+        let is_cell = line.starts_with("  ") && (line.contains(" f32 ") || line.contains(" f64 "));
+        let verdicts = [" holds", " degrades", " fails"];
+        is_cell && verdicts.iter().any(|verdict| line.contains(verdict))
     });
     assert_eq!(printed.count(), rows.len());
     for row in &rows {
@@ -101,6 +101,36 @@ fn one_case_is_printed_in_full_and_becomes_three_files() {
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.contains("id=\"H05\""));
     assert!(!report.contains("http://") && !report.contains("https://"));
+}
+
+/// Of the whole matrix only the long mode has time: `screen` cuts any text.
+#[test]
+fn the_first_screen_has_the_answer_and_no_more_than_a_screen_holds() {
+    let home = tempfile::tempdir().unwrap();
+    let cases: &[&str] = &["--case", "H01", "--case", "H05"];
+    let long = std::env::var_os("CREPITUS_LONG").is_some();
+    let output = stability(&home.path().join("some"), if long { &[] } else { cases });
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    assert!(text.lines().count() <= 25, "{text}");
+    let answer = text.split("\n\n").next().unwrap().replace('\n', " ");
+    for part in [
+        "The solver that the device runs (exact-events, frozen, f32) holds in ",
+        "Explicit Euler (f32) fails in ",
+        "Implicit Euler (f32) fails in ",
+        "must hold, and all do.",
+    ] {
+        assert!(answer.contains(part), "{part}: {text}");
+    }
+    let rows: Vec<_> = text
+        .lines()
+        .filter(|line| line.contains(" of ") && line.starts_with("exact-events"))
+        .collect();
+    assert_eq!(rows.len(), 1, "{text}");
+    assert!(
+        text.trim_end().ends_with("--all prints every case"),
+        "{text}"
+    );
 }
 
 #[test]

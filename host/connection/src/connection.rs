@@ -210,7 +210,7 @@ impl Transport for Connection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_client::Client;
+    use crepitus_client::{Client, Error, Event};
     use crepitus_scene::{Overrides, shipped};
 
     fn scene() -> Result<Scene, SceneError> {
@@ -272,6 +272,38 @@ mod tests {
         let connection = Connection::open(Some("sim"), "a test", scene).unwrap();
         let client = Client::connect(connection).unwrap();
         assert_eq!(client.port(), "a simulated device");
+    }
+
+    #[test]
+    fn crepitus_stays_within_its_static_torque() -> Result<(), Error> {
+        let mut client = Client::connect(Connection::open(Some("sim"), "a test", scene).unwrap())?;
+        client.zero()?;
+        client.arm()?;
+        client.subscribe()?;
+        while client.now() < Duration::from_secs(2) {
+            if let Some(Event::Block(samples)) = client.pump(Duration::from_millis(20))? {
+                let mut torques = samples.block.samples.iter().map(|s| s.model_torque_nm);
+                assert!(torques.all(|nm| nm.abs() < 0.401));
+            }
+        }
+        client.disarm()
+    }
+
+    #[test]
+    fn the_readme_shows_that_test() {
+        let (readme, here) = (
+            include_str!("../../../README.md"),
+            include_str!("connection.rs"),
+        );
+        let shown: Vec<&str> = readme
+            .split("```rust\n")
+            .skip(1)
+            .filter_map(|part| part.split("```").next())
+            .collect();
+        assert_eq!(shown.len(), 1);
+        for line in shown[0].lines().map(str::trim) {
+            assert!(here.lines().any(|own| own.trim() == line), "{line}");
+        }
     }
 
     #[test]

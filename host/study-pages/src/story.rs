@@ -8,6 +8,7 @@ pub(crate) mod hand_torque;
 mod implicit_euler;
 mod parameter_change;
 mod restick_rules;
+mod three_solvers;
 mod turn_back;
 
 use crepitus_plot::palette::{CURVES, Ink, LEVEL, TEXT};
@@ -34,6 +35,7 @@ const INKS: [Ink; 4] = [CURVES[7], CURVES[0], CURVES[2], CURVES[3]];
 /// The stories of hard cases as figures of a page, or files.
 pub fn figures(stories: &Stories, paper: Paper) -> Vec<Figure> {
     [
+        three_solvers::story(&stories.three_solvers),
         implicit_euler::story(&stories.implicit_euler),
         restick_rules::story(&stories.restick_rules),
         parameter_change::story(&stories.parameter_change),

@@ -17,6 +17,7 @@ mod recorded;
 mod reported;
 mod results;
 mod safe_text;
+mod screen;
 mod sections;
 mod shell;
 mod status_line;

@@ -171,8 +171,13 @@ fn every_variant_is_what_two_runs_say() {
     assert_eq!(named("motor").name(), "with motor");
     assert_eq!(named("crepitus").added().unwrap().states, 2);
     assert_eq!(named("motor").added().unwrap().states, 2);
-    // The weight of the leg is most of what the hand feels.
-    assert_eq!(study.by_influence()[0].effect, "limb");
+    // The weight of the leg is most of the torque at the hand, and nothing of what vibrates.
+    let rms = |row: &&crepitus_study::effects::Row| row.added().map_or(0.0, |added| added.rms_nm);
+    let heaviest = study.rows.iter().max_by(|a, b| rms(a).total_cmp(&rms(b)));
+    assert_eq!(heaviest.unwrap().effect, "limb");
+    let felt = study.by_vibration();
+    assert_eq!(felt.len(), study.rows.len() - 1);
+    assert!(felt.is_sorted_by(|a, b| a.1.abs() >= b.1.abs()), "{felt:?}");
     let felt = study.hand_torque.as_ref().unwrap();
     assert_eq!(felt.variants.len(), 5);
     for variant in &felt.variants {

@@ -9,6 +9,7 @@ use crepitus_plant::recording::{AngleUnit, Angles, Quantity, Source, read, smoot
 use crepitus_study::accuracy::StudyScene;
 use crepitus_study::accuracy::convergence::{motions, orders_on, run_at};
 use crepitus_study::accuracy::orders::{Order, Orders};
+use std::fmt::Write as _;
 use std::path::Path;
 
 const TICK_S: f64 = 5e-5;
@@ -41,15 +42,22 @@ fn at_a_step(scene: &StudyScene, solver: Solver, step_s: f64) -> Option<f64> {
 }
 
 /// Rungs down, motions across: order, and error at 50 µs.
-fn print(scenes: &[StudyScene], orders: &[Orders]) {
+fn tables(scenes: &[StudyScene], orders: &[Orders]) -> String {
+    let mut tables = String::new();
     for convention in Convention::ALL {
         let of: Vec<&StudyScene> = scenes
             .iter()
             .filter(|s| s.settings.convention == convention)
             .collect();
         let head: Vec<_> = of.iter().map(|s| s.name.as_str()).collect();
-        println!("\n| `{}` | {} |", convention.name(), head.join(" | "));
-        println!("|---|{}", "---|".repeat(head.len()));
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            tables,
+            "\n| `{}` | {} |",
+            convention.name(),
+            head.join(" | ")
+        );
+        let _ = writeln!(tables, "|---|{}", "---|".repeat(head.len()));
         for solver in Solver::ALL {
             if solver.refusal(convention).is_some() {
                 continue;
@@ -64,12 +72,24 @@ fn print(scenes: &[StudyScene], orders: &[Orders]) {
                     .map_or_else(|| "other events".to_owned(), |e| format!("{e:.0e} s"));
                 format!("{} ({error})", text(found.unwrap().event_time_rms))
             });
-            println!(
+            let _ = writeln!(
+                tables,
                 "| `{}` | {} |",
                 solver.name(),
                 cells.collect::<Vec<_>>().join(" | ")
             );
         }
+    }
+    tables
+}
+
+/// The tables, which the book has.
+fn print(scenes: &[StudyScene], orders: &[Orders]) {
+    let tables = tables(scenes, orders);
+    println!("{tables}");
+    let book = include_str!("../../../docs/accuracy.md");
+    for table in tables.trim().split("\n\n") {
+        assert!(book.contains(table), "docs/accuracy.md has another one");
     }
 }
 

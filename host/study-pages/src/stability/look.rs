@@ -1,10 +1,12 @@
 //! Style of a verdict: its colour, a sign that means the same without
 //! colour, a short number, and all of it in words.
 
-use crepitus_study::stability::{Cell, Failure, Verdict};
+use crepitus_study::stability::{Cell, Failure, Rung, Verdict};
 
 use super::scale::{self, Tone};
 
+/// Sign of a criterion without a number that is met, and of the reference.
+pub(super) const MET: &str = "✓";
 /// Prefix of the number of a cell that degrades.
 pub(super) const DEGRADES: &str = "↓";
 /// Prefix of the details of a failing cell.
@@ -27,7 +29,14 @@ pub(super) struct Look {
 impl Look {
     pub(super) fn of(cell: &Cell) -> Self {
         let (tone, short, flagged) = match &cell.verdict {
-            Verdict::Holds(margin) => (scale::holds(margin.share()), short(margin.measured), false),
+            // It is what the others are measured with.
+            Verdict::Holds(_) if cell.subject.solver == Rung::Reference => {
+                (scale::holds(0.0), MET.to_owned(), false)
+            }
+            Verdict::Holds(margin) if margin.is_number() => {
+                (scale::holds(margin.share()), short(margin.measured), false)
+            }
+            Verdict::Holds(_) => (scale::holds(0.0), MET.to_owned(), false),
             Verdict::Degrades { margin, flagged } => (
                 scale::DEGRADES,
                 format!("{DEGRADES}{}", short(margin.measured)),

@@ -5,12 +5,13 @@ use crepitus_study::stability::story::Stories;
 use maud::{Markup, html};
 
 use super::{details, heat_map, look, scale};
-use crate::{Paper, StudyText, story};
+use crate::{StudyText, story};
 use crepitus_plot::page;
 
 const LAYOUT: &str = include_str!("page.css");
 
 pub(super) fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText) -> String {
+    let told = |paper| stories.map_or_else(Vec::new, |told| story::figures(told, paper));
     let body = html! {
         header {
             p.kicker { "Crepitus · which hard cases hold" }
@@ -19,9 +20,10 @@ pub(super) fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText)
         }
         (broken(matrix))
         main {
+            (page::figures(|paper| told(paper).into_iter().take(1).collect()))
             @if matrix.rows.is_empty() { p { "There are no cases." } }
             @else { (how_to_read()) (heat_map::table(matrix)) }
-            @for told in stories.map_or_else(Vec::new, |told| story::figures(told, Paper::Screen)) { (page::figure(&told)) }
+            (page::figures(|paper| told(paper).into_iter().skip(1).collect()))
             (details::cases(matrix))
             (page::tables(&text.tables))
         }

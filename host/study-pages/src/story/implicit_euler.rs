@@ -56,7 +56,7 @@ pub(super) fn story(data: &ImplicitEuler) -> Story {
                 ..PanelData::default()
             },
             PanelData {
-                heading: "Velocity of the object where it should meet the shaft".to_owned(),
+                heading: "Velocity of the object as it meets the shaft".to_owned(),
                 x: Scale::linear("Time (s)").within(data.near_s.0, data.near_s.1),
                 y: Scale::linear("θ̇ (rad/s)"),
                 series: lines(|method| method.theta_dot_rad_s.clone()),

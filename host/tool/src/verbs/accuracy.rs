@@ -2,6 +2,7 @@
 //! that is accurate enough, on the host or on the target.
 
 mod answer;
+mod headline;
 mod orders_table;
 mod page;
 mod plan;
@@ -15,6 +16,7 @@ use crate::cli::Force;
 use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
 use crate::results::{self, REPORT};
+use crate::screen::{All, screen};
 use crate::studying::{self, Watch};
 use clap::Args;
 use crepitus_files::json_path;
@@ -37,7 +39,7 @@ Examples:
   crepitus accuracy --need frequency=1e-6 --convention physical \\
       --precision f64
 
-Every solver, in f32 and f64 and at steps from 1 ms to 2 µs, is compared with the reference \
+The answer comes first, --all prints every table. Every solver, in f32 and f64 and at steps from 1 ms to 2 µs, is compared with the reference \
 on four constant speeds and a hand-like sine, and timed on this machine in CPU time; so is every other symptom, \
 on strokes, a steady movement and a tremor, timed beside a step of crepitus. With --target it is also \
 run on an emulated STM32F405: modelled cycles, 0 wait states; not measured on hardware. The worst \
@@ -70,6 +72,9 @@ pub(crate) struct Arguments {
     /// it. With --need these cycles choose.
     #[arg(long)]
     target: bool,
+
+    #[command(flatten)]
+    all: All,
 
     #[command(flatten)]
     force: Force,
@@ -121,12 +126,13 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let prepare = |out| {
         let claim = arguments.force.claim("accuracy", &arguments.scene);
         let is_whole = arguments.scene.is_none() && need.is_none();
-        let tables: &[_] = if is_whole {
-            &["points.csv", "symptoms.csv"]
-        } else {
-            &["points.csv"]
-        };
-        results::folder(out, claim, [&REPORT[..], tables].concat())
+        let tables = [
+            Some("points.csv"),
+            is_whole.then_some("symptoms.csv"),
+            arguments.target.then_some("cycles.csv"),
+        ];
+        let names = REPORT.into_iter().chain(tables.into_iter().flatten());
+        results::folder(out, claim, names)
     };
     let folder = out.as_deref().map(prepare).transpose()?;
     // Fails before the work if the image cannot be built.
@@ -164,15 +170,23 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         )?;
     }
     match &need {
-        Some(need) => answer::print_answer(need, &studied, &study, out.as_deref(), as_json),
+        Some(need) => {
+            let all = arguments.all;
+            answer::print_answer(need, &studied, &study, out.as_deref(), all, as_json)
+        }
         None if as_json => {
             print_json(&json!({ "out": out.as_deref().map(json_path), "summary": summary }))
         }
         None => {
             let report = out.unwrap_or_default().join("report.html");
+            let answer = headline::answer(&study);
+            if !arguments.all.all {
+                let last = format!("report: {}; --all prints every table", report.display());
+                return print(&screen(&answer, &headline::table(&study), &last));
+            }
             let target = study.target.as_ref().map(target::table);
             print(&format!(
-                "{}\n{}{}{}{}\nreport: {}\n",
+                "{answer}\n\n{}\n{}{}{}{}\nreport: {}\n",
                 table::at_the_tick(&study),
                 orders_table::by_motion(&by_motion),
                 with_a_line_before(&symptoms::table(&study.symptoms)),

@@ -12,6 +12,7 @@ use crate::cli::{Force, key_and_value, set_once};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::pictures::Pictures;
 use crate::results::{self, REPORT};
+use crate::screen::{All, screen};
 use crate::studying::Watch;
 use clap::Args;
 use crepitus_files::json_path;
@@ -34,9 +35,9 @@ Examples:
   crepitus effects my-scene.toml --tolerance torque=0.02,events=0.01 \\
       --set duration_s=2
 
-Without a SCENE all effects are listed, with their parameters. With one, each of its effects is \
+Without a SCENE all effects are listed, with --all their parameters, too. With one, each of its effects is \
 left out in turn and each absent one added: how much that changes the torque at the hand (RMS, \
-peak, three bands of frequency, number of events), and what it costs (time of a step, states).
+peak, three bands of frequency, number of events), and what it costs (time of a step, states). The answer comes first.
 
 A TOLERANCE is a list of limits: torque (rms difference of the torque at the hand, N·m), peak \
 (largest difference, N·m), events (relative difference of the number of events). The answer is \
@@ -59,6 +60,9 @@ pub(crate) struct Arguments {
     set: Vec<(String, String)>,
 
     #[command(flatten)]
+    all: All,
+
+    #[command(flatten)]
     force: Force,
 
     #[command(flatten)]
@@ -76,7 +80,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         return if as_json {
             print_json(&list::values())
         } else {
-            print(&list::text())
+            print(&list::text(arguments.all))
         };
     };
     let plan = plan(arguments, path)?;
@@ -100,16 +104,24 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     for warning in study.warnings.iter().chain(&summary::unsteady(&study)) {
         warn(warning);
     }
-    let answer = study.answer.as_ref().map_or_else(String::new, |answer| {
-        format!("\n{}", smallest::words(answer))
-    });
-    print(&format!(
-        "{}\n{}{}\n{answer}report: {}\n",
-        table::table(&study),
-        build_up::table(&study.build_up),
-        summary.conclusion,
-        out.join("report.html").display()
-    ))
+    let answer = study.answer.as_ref();
+    let answer = answer.map_or_else(String::new, smallest::words);
+    let report = out.join("report.html");
+    let conclusion = &summary.conclusion;
+    print(&if arguments.all.all {
+        format!(
+            "{conclusion}\n{answer}\n{}\n{}\nreport: {}\n",
+            table::table(&study),
+            build_up::table(&study.build_up),
+            report.display()
+        )
+    } else if answer.is_empty() {
+        let last = format!("report: {}; --all prints every variant", report.display());
+        screen(conclusion, &table::short(&study), &last)
+    } else {
+        let last = format!("report: {}; --all prints every variant", report.display());
+        screen(conclusion, &answer, &last)
+    })
 }
 
 fn plan(arguments: &Arguments, path: &Path) -> Result<Plan, Failure> {

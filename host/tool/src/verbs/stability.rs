@@ -3,6 +3,7 @@
 
 mod case_text;
 mod coupled;
+mod headline;
 mod list;
 mod page;
 mod plan;
@@ -13,6 +14,7 @@ use crate::cli::Force;
 use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
 use crate::results::{self, REPORT};
+use crate::screen::{All, screen};
 use crate::studying::{self, Watch};
 use clap::Args;
 use crepitus_files::json_path;
@@ -22,7 +24,7 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use summary::Summary;
 
-/// Try the hard cases on every solver: what holds, and by what margin.
+/// Try the hard cases on the solvers that they concern: what holds, and by what margin.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -32,10 +34,11 @@ Examples:
   crepitus stability --long --out /tmp/stability
   crepitus stability --coupled
 
-Every hard case runs on every solver under every convention, in f32 and f64. A cell of the matrix \
+A hard case runs on the solvers that it concerns, under the conventions that they have, in f32 and f64; many are of the \
+device, and run on its solver alone. A cell of the matrix \
 holds, with the measured margin; or degrades: right in kind, but a number exceeds its limit; or \
 fails: the simulated joint is not the one that was asked for. Some cells must hold; if one \
-does not, the exit code is 1. With one --case, everything about it is printed.
+does not, the exit code is 1. The answer comes first; --all prints a line a case, or, with one --case, everything about it.
 
 With --coupled a hand that stops is put to the whole device instead: which stiffness stays quiet \
 with which cuff, lag and friction left in the gear, and what the presets have left.")]
@@ -68,6 +71,9 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with_all = ["cases", "solvers", "conventions", "precision", "long", "list"])]
     coupled: bool,
 
+    #[command(flatten)]
+    all: All,
+
     /// Folder for cases.csv, summary.json and report.html [default: out/stability; out/coupled].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -83,7 +89,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if arguments.coupled {
         let out = arguments.out.as_deref().unwrap_or(Path::new("out/coupled"));
-        return coupled::coupled(out, arguments.force, &arguments.pictures, as_json);
+        return coupled::coupled(out, arguments, as_json);
     }
     let plan = plan::plan(arguments)?;
     if arguments.list {
@@ -116,15 +122,25 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             Ok(())
         };
     }
-    let text = match (matrix.rows.as_slice(), arguments.cases.is_empty()) {
-        ([row], false) => case_text::case(row),
-        _ => table::table(&matrix, &summary),
+    let answer = headline::answer(&matrix, &summary);
+    let broken = table::broken(&matrix);
+    let report = out.join("report.html");
+    let only = match (matrix.rows.as_slice(), arguments.cases.is_empty()) {
+        ([row], false) => Some(case_text::case(row)),
+        _ => None,
     };
-    print(&format!(
-        "{text}{}\nreport: {}\n",
-        table::broken(&matrix),
-        out.join("report.html").display()
-    ))?;
+    let text = if arguments.all.all {
+        let table = only.unwrap_or_else(|| table::table(&matrix, &summary));
+        format!(
+            "{answer}\n\n{table}{broken}\nreport: {}\n",
+            report.display()
+        )
+    } else {
+        let table = only.unwrap_or_else(|| headline::table(&matrix));
+        let last = format!("report: {}; --all prints every case", report.display());
+        screen(&answer, &(broken + &table), &last)
+    };
+    print(&text)?;
     judge(&matrix)
 }
 

@@ -15,6 +15,7 @@
 //! matches and reversals. It is not a bound.
 
 pub mod inputs;
+pub mod recorded;
 pub mod table;
 
 use crate::accuracy::point::Point;

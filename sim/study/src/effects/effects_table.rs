@@ -69,7 +69,7 @@ pub fn effects_table(rows: &[Row]) -> Table<'_, Row> {
 
 /// Time that an effect adds to a step, ns; of a cost that is lost in the timings
 /// its bound.
-fn cost(added: &AddedTime) -> String {
+pub fn cost(added: &AddedTime) -> String {
     match added.ns_per_step {
         Some(ns) => format!("+{ns:.0}"),
         None if added.is_below_resolution() => format!("<{:.0}", added.ns_resolution.ceil()),

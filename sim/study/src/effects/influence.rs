@@ -19,6 +19,13 @@ pub struct Torque {
     pub bands_nm: [f64; 3],
 }
 
+impl Torque {
+    /// Root mean square of the vibration, 10 to 450 Hz, N·m; NaN where the bands are.
+    pub fn vibration_nm(&self) -> f64 {
+        self.bands_nm.iter().map(|nm| nm * nm).sum::<f64>().sqrt()
+    }
+}
+
 /// Difference of two torques, tick by tick.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {

@@ -156,11 +156,15 @@ impl EffectsStudy {
         spreads.get(spreads.len() / 2).copied().unwrap_or(0.0)
     }
 
-    /// The completed variants by contribution to the torque, largest first.
-    pub fn by_influence(&self) -> Vec<&Row> {
-        let mut rows: Vec<&Row> = self.rows.iter().filter(|r| r.added().is_some()).collect();
-        let rms = |row: &Row| row.added().map_or(0.0, |a| a.rms_nm);
-        rows.sort_by(|a, b| rms(b).total_cmp(&rms(a)));
+    /// The completed variants by how much of the [vibration](Torque::vibration_nm) at the hand they change, most
+    /// first. The weight of a leg, which is felt but tells nothing of a knee, does not count.
+    pub fn by_vibration(&self) -> Vec<(&Row, f64)> {
+        let vibration = |row: &Row| row.ran().map_or(f64::NAN, |ran| ran.torque.vibration_nm());
+        let scene = self.whole().map_or(f64::NAN, vibration);
+        let variants = self.rows.iter().filter(|row| row.added().is_some());
+        let mut rows: Vec<(&Row, f64)> =
+            variants.map(|row| (row, vibration(row) - scene)).collect();
+        rows.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
         rows
     }
 }

@@ -15,6 +15,9 @@ use crepitus_scene::scene::Precision;
 /// Factor of the cycle rate beyond which it is another motion.
 const ANOTHER_MOTION: f64 = 2.0;
 
+/// A criterion without a number that is met.
+const MET: Finding = Finding::Number(Margin::NONE);
+
 /// Failure of a criterion whose torque was not observed: what was not looked at is not right.
 const NO_TORQUE: Failure = Failure::Broken("there is no torque from then on");
 
@@ -98,7 +101,8 @@ pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
     let tally = &seen.tally;
     let precision = subject.precision;
     match criterion {
-        Criterion::Survives => number(seen.peak, 1.0 + BOUND_SLACK, ""),
+        // In every slip the torque is at its limit.
+        Criterion::Survives => met_or(seen.peak, 1.0 + BOUND_SLACK, ""),
         Criterion::Events { within_s } => events(evidence, within_s.of(precision)),
         Criterion::EventTorques { within_nm } => event_torques(evidence, within_nm.of(precision)),
         Criterion::Count { what, least, most } => {
@@ -108,7 +112,7 @@ pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
                 Counted::Reverses => tally.reverses,
             };
             if (*least..=*most).contains(&found) {
-                number(0.0, 0.0, "")
+                MET
             } else {
                 let expected = if found < *least { *least } else { *most };
                 Finding::Failed(Failure::OtherEvents { found, expected }, None)
@@ -118,7 +122,7 @@ pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
             found if found > *most => {
                 Finding::Failed(Failure::Broken("chatter within a step"), None)
             }
-            found => number(f64::from(found), f64::from(*most), "events"),
+            _ => MET,
         },
         Criterion::EventsPerSecond { most } => {
             let duration_s = seen.duration_s();
@@ -130,7 +134,7 @@ pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
                 };
                 return Finding::Failed(failure, None);
             }
-            number(rate, *most, "events/s")
+            MET
         }
         Criterion::CycleRate { hz, within } => cycle_rate(seen, *hz, within.of(precision)),
         Criterion::IntervalVariation { most } => match tally.cycles.variation() {
@@ -144,7 +148,7 @@ pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
             let off_s = (tally.slips.high - slip_s).max(slip_s - tally.slips.low);
             number(off_s / slip_s, within.of(precision), "")
         }
-        Criterion::SilentAfter { time_s } => number(tally.last_s.unwrap_or(0.0), *time_s, "s"),
+        Criterion::SilentAfter { time_s } => met_or(tally.last_s.unwrap_or(0.0), *time_s, "s"),
         Criterion::TorqueWithin { .. }
         | Criterion::TorqueStays { .. }
         | Criterion::TorqueReturns { .. }
@@ -153,7 +157,7 @@ pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
             if tally.breaks_at_rest > 0 {
                 Finding::Failed(Failure::Broken("breaks while the shaft is at rest"), None)
             } else {
-                number(0.0, 0.0, "")
+                MET
             }
         }
         Criterion::SlipsWithShaft { within_rad_s } => {
@@ -177,7 +181,7 @@ pub(super) fn judge(criterion: &Criterion, evidence: &Evidence<'_>) -> Finding {
         ),
         Criterion::Refused => match seen.accepted.first() {
             Some(what) => Finding::Failed(Failure::Broken(what), None),
-            None => number(0.0, 0.0, ""),
+            None => MET,
         },
         _ => of_a_device(criterion, seen, precision),
     }
@@ -203,7 +207,7 @@ fn of_a_device(criterion: &Criterion, seen: &Observation, precision: Precision) 
         Criterion::GuardTicks { least, most } => {
             let found = seen.guard_ticks;
             if (*least..=*most).contains(&found) {
-                number(0.0, 0.0, "")
+                MET
             } else {
                 let failure = Failure::Broken("torque off for another number of ticks");
                 Finding::Failed(failure, None)
@@ -229,7 +233,7 @@ fn of_symptoms(criterion: &Criterion, seen: &Observation, precision: Precision) 
         Criterion::Words(words) => {
             let found = of.events.iter().map(|event| event.word);
             if found.eq(words.iter().copied()) {
-                number(0.0, 0.0, "")
+                MET
             } else {
                 other_words(of.events.len(), words.len())
             }
@@ -246,7 +250,7 @@ fn of_symptoms(criterion: &Criterion, seen: &Observation, precision: Precision) 
             let own = of.events.iter().filter(|event| event.word == *word);
             let found = u64::try_from(own.count()).unwrap_or(u64::MAX);
             if (*least..=*most).contains(&found) {
-                number(0.0, 0.0, "")
+                MET
             } else {
                 let expected = if found < *least { *least } else { *most };
                 Finding::Failed(Failure::OtherEvents { found, expected }, None)
@@ -327,7 +331,7 @@ fn torques(criterion: &Criterion, seen: &Observation, precision: Precision) -> F
             if seen.last_change > 0 && changed_s >= *from_s {
                 Finding::Failed(Failure::Broken("the torque changes"), Some(changed_s))
             } else {
-                number(0.0, 0.0, "")
+                MET
             }
         }
         Criterion::TorqueReturns { within_nm } => number(
@@ -350,6 +354,15 @@ pub(super) fn remark(criterion: &Criterion, seen: &Observation) -> String {
     }
 }
 
+/// A number whose distance from its limit says nothing as long as it keeps it.
+fn met_or(measured: f64, limit: f64, unit: &'static str) -> Finding {
+    if measured <= limit {
+        MET
+    } else {
+        number(measured, limit, unit)
+    }
+}
+
 /// Compares a number with its limit.
 fn number(measured: f64, limit: f64, unit: &'static str) -> Finding {
     Finding::Number(Margin {
@@ -361,7 +374,7 @@ fn number(measured: f64, limit: f64, unit: &'static str) -> Finding {
 
 fn same(are: bool) -> Finding {
     if are {
-        number(0.0, 0.0, "")
+        MET
     } else {
         Finding::Failed(Failure::Broken("other torque bits"), None)
     }

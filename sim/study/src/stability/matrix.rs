@@ -153,14 +153,7 @@ fn worst_verdict(
             add(judge(criterion, &evidence).verdict(flagged), detail);
         }
     }
-    Ok(worst.unwrap_or((
-        Verdict::Holds(Margin {
-            measured: 0.0,
-            limit: 0.0,
-            unit: "",
-        }),
-        String::new(),
-    )))
+    Ok(worst.unwrap_or((Verdict::Holds(Margin::NONE), String::new())))
 }
 
 /// The time from which a trial checks the torque, s.

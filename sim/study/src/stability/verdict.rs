@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-/// A measured number and its limit: it holds if it is not above.
+/// A measured number and its limit: it holds if it is not above. A criterion that is met or not, without a number,
+/// has [none](Margin::NONE).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margin {
     /// The measured value.
@@ -82,6 +83,18 @@ impl Verdict {
 }
 
 impl Margin {
+    /// Of a criterion without a number, which is met.
+    pub const NONE: Self = Self {
+        measured: 0.0,
+        limit: 0.0,
+        unit: "",
+    };
+
+    /// Returns whether there is a number that could come near its limit.
+    pub fn is_number(&self) -> bool {
+        *self != Self::NONE
+    }
+
     /// The used share of the limit: at most 1 if it holds. 0 of 0 is 0; NaN
     /// exceeds every limit.
     pub fn share(&self) -> f64 {
@@ -131,7 +144,8 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let flag = |flagged: &bool| if *flagged { ", flagged" } else { "" };
         match self {
-            Self::Holds(margin) => write!(f, "holds ({margin})"),
+            Self::Holds(margin) if margin.is_number() => write!(f, "holds ({margin})"),
+            Self::Holds(_) => f.write_str("holds"),
             Self::Degrades { margin, flagged } => {
                 write!(f, "degrades{} ({margin})", flag(flagged))
             }

@@ -5,6 +5,7 @@ mod on_target;
 use super::plan::Studied;
 use super::{target, words};
 use crate::failure::{Failure, print, print_json};
+use crate::screen::All;
 use crepitus_files::json_path;
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::answer::{Answer, Candidate, Mark};
@@ -22,6 +23,7 @@ pub(super) fn print_answer(
     studied: &Studied,
     study: &Study,
     out: Option<&Path>,
+    all: All,
     as_json: bool,
 ) -> Result<(), Failure> {
     let question = Question {
@@ -37,7 +39,7 @@ pub(super) fn print_answer(
             "chosen_by": if question.target.is_some() { "target cycles" } else { CLOCK },
         }))?;
     } else {
-        print(&in_words(need, &question, study, &answer))?;
+        print(&all.limited(&in_words(need, &question, study, &answer)))?;
     }
     if answer.chosen.is_some() {
         Ok(())

@@ -1,7 +1,7 @@
 //! The files of a study, and the text of its report.
 
 use super::summary::Summary;
-use super::words;
+use super::{headline, words};
 use crate::failure::Failure;
 use crate::pictures::Pictures;
 use crate::results::{Files, footer, report_files};
@@ -10,6 +10,7 @@ use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::orders::{Order, Orders};
 use crepitus_study::accuracy::points_table::points_table;
 use crepitus_study::accuracy::symptoms::table::symptoms_table;
+use crepitus_study::accuracy::target::table::target_table;
 use crepitus_study::accuracy::{Point, Study};
 use crepitus_study_pages::{Section, StudyText, accuracy};
 use crepitus_table::show::microseconds;
@@ -31,6 +32,12 @@ pub(super) fn files(
         let table = symptoms_table(&study.symptoms);
         files.push(("symptoms.csv".to_owned(), table.to_csv().into()));
     }
+    if let Some(on) = &study.target {
+        files.push((
+            "cycles.csv".to_owned(),
+            target_table(&on.rows).to_csv().into(),
+        ));
+    }
     Ok(files)
 }
 
@@ -40,9 +47,7 @@ fn text(study: &Study, summary: &Summary<'_>) -> StudyText {
     tables.extend(refused(study));
     StudyText {
         title: "What accuracy costs in time".to_owned(),
-        intro: "Every solver, in single and double precision and at a range of steps, against the event-driven \
-                reference. A solver down and to the left of another is both better and cheaper."
-            .to_owned(),
+        intro: headline::answer(study),
         notes: notes(study),
         tables,
         footer: footer(),
@@ -51,6 +56,9 @@ fn text(study: &Study, summary: &Summary<'_>) -> StudyText {
 
 fn notes(study: &Study) -> Vec<String> {
     let mut notes = vec![
+        "Every solver, in single and double precision and at a range of steps, against the event-driven reference. A \
+         solver down and to the left of another is both better and cheaper."
+            .to_owned(),
         "Events are matched one to one in the order of time, by kind and sense. Where interior events have no \
          partner a solver has not simulated the same thing: such points are in no curve and are listed beside it."
             .to_owned(),

@@ -33,6 +33,9 @@ pub(super) fn table(points: &[SymptomPoint]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_study::accuracy::Study;
+    use crepitus_study::accuracy::symptoms::{SymptomPlan, add};
+    use crepitus_study::{Cancelled, Watcher};
 
     fn point(
         form: Option<&'static str>,
@@ -55,6 +58,42 @@ mod tests {
             ns_per_step: 12.5,
             time_ratio: 6.25,
             time_spread: 0.01,
+        }
+    }
+
+    /// Nobody waits for it.
+    struct Alone;
+
+    impl Watcher for Alone {
+        fn progress(&mut self, _: f64) -> Result<(), Cancelled> {
+            Ok(())
+        }
+    }
+
+    /// All of a line but its last cell, which is a time.
+    #[test]
+    fn the_book_has_the_errors() {
+        let plan = SymptomPlan {
+            steps_s: &[TICK_S],
+            precisions: &[Precision::F32, Precision::F64],
+            repeats: 1,
+        };
+        let mut study = Study::default();
+        add(&mut study, &plan, &mut Alone).unwrap();
+        let table = table(&study.symptoms);
+        let book = include_str!("../../../../../docs/accuracy.md");
+        let lines: Vec<&str> = table
+            .lines()
+            .filter(|line| line.starts_with("| "))
+            .skip(1)
+            .collect();
+        assert!(lines.len() >= 10, "{table}");
+        for line in lines {
+            let (errors, _) = line.trim_end_matches(" |").rsplit_once(" | ").unwrap();
+            assert!(
+                book.contains(errors),
+                "docs/figures.sh makes it again: {line}"
+            );
         }
     }
 

@@ -11,13 +11,7 @@ const TICK_S: f64 = 5e-5;
 /// Table, for each convention, of every rung at the device's tick, or at the studied step
 /// that is nearest to it: the worst of all scenes.
 pub(super) fn at_the_tick(study: &Study) -> String {
-    let away = |h: f64| (h / TICK_S).ln().abs();
-    let Some(step_s) = study
-        .points
-        .iter()
-        .map(|p| p.step_s)
-        .min_by(|a, b| away(*a).total_cmp(&away(*b)))
-    else {
+    let Some(step_s) = nearest_to_the_tick(study) else {
         return "no scene is long enough for any of the steps".to_owned();
     };
     let mut text = format!(
@@ -48,6 +42,13 @@ pub(super) fn at_the_tick(study: &Study) -> String {
     text
 }
 
+/// The studied step that is nearest to the device's tick, s.
+pub(super) fn nearest_to_the_tick(study: &Study) -> Option<f64> {
+    let away = |h: f64| (h / TICK_S).ln().abs();
+    let steps_s = study.points.iter().map(|p| p.step_s);
+    steps_s.min_by(|a, b| away(*a).total_cmp(&away(*b)))
+}
+
 fn table(rows: &[Row]) -> Table<'_, Row> {
     Table::of(rows)
         .people("solver", |row| row.solver)
@@ -68,25 +69,26 @@ fn table(rows: &[Row]) -> Table<'_, Row> {
         })
 }
 
-/// The least that any held torque is off.
-fn floor(study: &Study, step_s: f64) -> String {
-    study
-        .points
-        .iter()
-        .filter(|p| p.step_s == step_s && p.held_floor_nm.is_finite())
-        .max_by(|a, b| a.held_floor_nm.total_cmp(&b.held_floor_nm))
-        .map_or_else(String::new, |worst| {
-            format!(
-                "\nTorque that is held for {} is off by {} N·m RMS at least, whatever the solver ({}, {}).",
-                microseconds(step_s),
-                scientific(worst.held_floor_nm),
-                worst.scene,
-                worst.convention
-            )
-        })
+/// The point at which any torque that is held for a step is off most.
+pub(super) fn worst_floor(study: &Study, step_s: f64) -> Option<&Point> {
+    let points = study.points.iter();
+    let known = points.filter(|p| p.step_s == step_s && p.held_floor_nm.is_finite());
+    known.max_by(|a, b| a.held_floor_nm.total_cmp(&b.held_floor_nm))
 }
 
-fn scenes(study: &Study, convention: &str) -> String {
+fn floor(study: &Study, step_s: f64) -> String {
+    worst_floor(study, step_s).map_or_else(String::new, |worst| {
+        format!(
+            "\nTorque that is held for {} is off by {} N·m RMS at least, whatever the solver ({}, {}).",
+            microseconds(step_s),
+            scientific(worst.held_floor_nm),
+            worst.scene,
+            worst.convention
+        )
+    })
+}
+
+pub(super) fn scenes(study: &Study, convention: &str) -> String {
     let count = study
         .scenes
         .iter()
@@ -99,20 +101,22 @@ fn scenes(study: &Study, convention: &str) -> String {
     }
 }
 
-/// A rung over the scenes of a convention.
-struct Row {
-    convention: &'static str,
-    solver: &'static str,
-    precision: &'static str,
+/// A rung, the worst of the scenes of a convention.
+pub(super) struct Row {
+    pub(super) convention: &'static str,
+    pub(super) solver: &'static str,
+    pub(super) precision: &'static str,
     /// Mean over the scenes, ns.
-    ns_per_step: f64,
-    event_s: f64,
+    pub(super) ns_per_step: f64,
+    pub(super) event_s: f64,
+    pub(super) frequency_rel: f64,
     held_nm: f64,
-    at_tick_nm: f64,
-    unmatched: u64,
+    pub(super) at_tick_nm: f64,
+    pub(super) unmatched: u64,
 }
 
-fn rows(study: &Study, step_s: f64) -> Vec<Row> {
+/// The rungs at this step, by convention in the order of the scenes.
+pub(super) fn rows(study: &Study, step_s: f64) -> Vec<Row> {
     let mut rows: Vec<(Row, f64)> = Vec::new();
     for p in study.points.iter().filter(|p| p.step_s == step_s) {
         match rows.iter_mut().find(|(r, _)| r.is_of(p)) {
@@ -120,6 +124,7 @@ fn rows(study: &Study, step_s: f64) -> Vec<Row> {
                 *count += 1.0;
                 row.ns_per_step += (p.ns_per_step - row.ns_per_step) / *count;
                 row.event_s = worse(row.event_s, p.max_event_error_s);
+                row.frequency_rel = worse(row.frequency_rel, p.frequency_error_rel);
                 row.held_nm = worse(row.held_nm, p.rms_held_torque_error_nm);
                 row.at_tick_nm = worse(row.at_tick_nm, p.rms_tick_torque_error_nm);
                 row.unmatched += p.unmatched;
@@ -145,6 +150,7 @@ impl Row {
             precision: p.precision,
             ns_per_step: p.ns_per_step,
             event_s: p.max_event_error_s,
+            frequency_rel: p.frequency_error_rel,
             held_nm: p.rms_held_torque_error_nm,
             at_tick_nm: p.rms_tick_torque_error_nm,
             unmatched: p.unmatched,

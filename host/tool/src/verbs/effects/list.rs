@@ -1,5 +1,6 @@
 //! All effects, from the one table of them.
 
+use crate::screen::All;
 use crepitus_model::parameters::{Choice, ParameterSpec};
 use crepitus_plant::effect::{Effect, Need};
 use crepitus_plant::effects::EFFECTS;
@@ -7,17 +8,20 @@ use crepitus_table::{Cell, Table};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The effects as text.
-pub(super) fn text() -> String {
+/// The effects as text: a line each, or with everything that is known of them.
+pub(super) fn text(all: All) -> String {
+    const USE: &str = "A scene calls for one with [effects.NAME]; `crepitus effects SCENE` shows what each does and costs.";
+    if !all.all {
+        let table = Table::of(&EFFECTS)
+            .people("effect", |effect| effect.name)
+            .people("adds", |effect| effect.adds);
+        return format!("{}\n{USE} --all lists their parameters.\n", table.to_text());
+    }
     let mut text = String::new();
     for effect in EFFECTS {
         push(&mut text, effect);
     }
-    text.push_str(
-        "A scene calls for one with [effects.NAME] and sets its numbers there; `crepitus effects SCENE` shows what \
-         each does and costs.\n",
-    );
-    text
+    text + USE + "\n"
 }
 
 // Writing to a String cannot fail.

@@ -35,7 +35,7 @@ fn text(study: &EffectsStudy, summary: &Summary<'_>) -> StudyText {
     StudyText {
         title: format!("What each effect does and costs: {}", study.title),
         intro: format!(
-            "Each effect of the scene is left out in turn, and each absent one added.\n{}",
+            "{}\nEach effect of the scene is left out in turn, and each absent one added.",
             summary.conclusion
         ),
         notes: notes(study),

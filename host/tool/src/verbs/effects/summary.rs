@@ -3,16 +3,14 @@
 
 use super::table::torque;
 use crate::studying;
+use crepitus_plant::effects::EFFECTS;
 use crepitus_scene::cpu_time::CLOCK;
+use crepitus_study::effects::EffectsStudy;
 use crepitus_study::effects::variant::Change;
-use crepitus_study::effects::{EffectsStudy, Row};
 use serde::Serialize;
 
 /// Version of this form.
 const SUMMARY_VERSION: u32 = 1;
-
-/// Smaller differences of the torque do not matter, N·m.
-pub(super) const WORTH_HAVING_NM: f64 = 5e-3;
 
 /// A study with what it comes to.
 #[derive(Serialize)]
@@ -47,68 +45,64 @@ impl<'a> Summary<'a> {
     }
 }
 
-/// Sentences on the effects that matter, those that do not, and those that are missing.
+/// Sentences on what runs and what it costs, what does not run, and what the hand feels of it.
 fn conclusion(study: &EffectsStudy) -> String {
-    let rows = study.by_influence();
-    let of = |change| rows.iter().filter(move |row| row.change == change);
-    let mut sentences = Vec::new();
-    let nm = |row: &Row| torque(row.added().map_or(f64::NAN, |a| a.rms_nm));
-    let left_out: Vec<&&Row> = of(Change::Without).collect();
-    match left_out.as_slice() {
-        [] => {}
-        [only] => sentences.push(format!("{} makes {} RMS at the hand.", only.effect, nm(only))),
-        [most, .., least] => sentences.push(format!(
-            "Of the scene's effects {} changes the torque at the hand most, by {} RMS, and {} least, by {}.",
-            most.effect,
-            nm(most),
-            least.effect,
-            nm(least)
-        )),
-    }
-    let small = |row: &&&Row| row.added().is_some_and(|a| a.rms_nm < WORTH_HAVING_NM);
-    let below: Vec<&str> = left_out
-        .iter()
-        .copied()
-        .filter(small)
-        .map(|row| row.effect)
-        .collect();
-    if !below.is_empty() {
-        sentences.push(format!(
-            "Below the {} worth having: {}.",
-            torque(WORTH_HAVING_NM),
-            below.join(", ")
-        ));
-    }
-    if let Some(most) = of(Change::With).next() {
-        sentences.push(format!(
-            "Of those that it leaves out {} would change it most, by {}.",
-            most.effect,
-            nm(most)
-        ));
-    }
-    if let Some(costliest) = costliest(&rows) {
-        sentences.push(costliest);
-    }
-    if sentences.is_empty() {
-        "No variant of the scene runs.".to_owned()
+    let Some(whole) = study.whole() else {
+        return "No variant of the scene runs.".to_owned();
+    };
+    let (has, all) = (study.effects.len(), EFFECTS.len());
+    let mut sentences = vec![format!(
+        "{has} of {all} effects run: {:.0} ns a step, {} states. The other {} are not built: no state, no instruction.",
+        whole.ns_per_step,
+        whole.states,
+        all - has
+    )];
+    let vibration = whole
+        .ran()
+        .map_or(f64::NAN, |ran| ran.torque.vibration_nm());
+    if vibration.is_nan() {
+        sentences.push("The run is too short for what vibrates.".to_owned());
     } else {
-        sentences.join(" ")
+        sentences.push(format!(
+            "Between 10 and 450 Hz the hand feels {} RMS.",
+            torque(vibration)
+        ));
+        sentences.extend(felt(study, vibration));
     }
+    sentences.extend(costliest(study));
+    sentences.join(" ")
+}
+
+/// The effects of the scene that change what vibrates most and least.
+fn felt(study: &EffectsStudy, vibration_nm: f64) -> Option<String> {
+    let rows = study.by_vibration();
+    let mut own = rows.iter().filter(|(row, _)| row.change == Change::Without);
+    let left = |change_nm: f64| torque(vibration_nm + change_nm);
+    let (most, change_nm) = own.next()?;
+    let most = format!("Without {} that is {}", most.effect, left(*change_nm));
+    Some(match own.next_back() {
+        Some((least, change_nm)) => {
+            format!(
+                "{most}; without {}, which is felt least, {}.",
+                least.effect,
+                left(*change_nm)
+            )
+        }
+        None => format!("{most}."),
+    })
 }
 
 /// The effect of the scene that takes the most time.
-fn costliest(rows: &[&Row]) -> Option<String> {
-    let measured = |row: &Row| row.added()?.time.ns_per_step;
-    let (costliest, cost) = rows
+fn costliest(study: &EffectsStudy) -> Option<String> {
+    let rows = study
+        .rows
         .iter()
-        .filter(|row| row.change == Change::Without)
-        .filter_map(|row| Some((row, measured(row)?)))
-        .max_by(|a, b| a.1.total_cmp(&b.1))?;
+        .filter(|row| row.change == Change::Without);
+    let costs = rows.filter_map(|row| Some((row, row.added()?.time.ns_per_step?)));
+    let (costliest, cost) = costs.max_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(format!(
-        "The costliest is {}: {:.0} of {:.0} ns a step here.",
-        costliest.effect,
-        cost,
-        cost + costliest.ns_per_step
+        "The costliest is {}: {cost:.0} ns of a step.",
+        costliest.effect
     ))
 }
 

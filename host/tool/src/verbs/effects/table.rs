@@ -1,9 +1,14 @@
 //! The study as a table for the terminal.
 
 use crepitus_scene::cpu_time::CLOCK;
-use crepitus_study::effects::EffectsStudy;
-use crepitus_study::effects::effects_table::effects_table;
-use crepitus_table::show::milli;
+use crepitus_study::effects::effects_table::{cost, effects_table};
+use crepitus_study::effects::variant::Change;
+use crepitus_study::effects::{EffectsStudy, Row};
+use crepitus_table::Table;
+use crepitus_table::show::{UNKNOWN, milli, scaled, signed};
+
+/// Effects that the scene does not have and that are listed all the same: those that would be felt most.
+const OTHERS: usize = 3;
 
 /// A line a variant.
 pub(super) fn table(study: &EffectsStudy) -> String {
@@ -15,6 +20,33 @@ pub(super) fn table(study: &EffectsStudy) -> String {
         micro(study.tick_s),
         effects_table(&study.rows).to_text()
     )
+}
+
+/// The scene's effects by what the hand feels of them, then those of the others that would be felt most.
+pub(super) fn short(study: &EffectsStudy) -> String {
+    let rows = study.by_vibration();
+    let own = rows.iter().filter(|(row, _)| row.change == Change::Without);
+    let others = rows
+        .iter()
+        .filter(|(row, _)| row.change == Change::With)
+        .take(OTHERS);
+    let rows: Vec<(&Row, f64)> = own.chain(others).copied().collect();
+    let vibration =
+        |(row, _): &(&Row, f64)| row.ran().map_or(f64::NAN, |ran| ran.torque.vibration_nm());
+    Table::of(&rows)
+        .people("variant", |(row, _)| row.name())
+        .people("10 to 450 Hz, mN·m RMS", vibration)
+        .rounded(milli)
+        .people("change", |(_, change_nm)| *change_nm)
+        .rounded(scaled::<1000, 1>)
+        .people("ns/step", |(row, _)| {
+            row.added()
+                .map_or(UNKNOWN.to_owned(), |added| cost(&added.time))
+        })
+        .right()
+        .people("states", |(row, _)| row.added().map(|added| added.states))
+        .rounded(signed)
+        .to_text()
 }
 
 /// A torque with its unit.

@@ -1,10 +1,9 @@
 //! All about one case, on a terminal.
 
+use crate::screen::{WIDTH, wrapped};
 use crepitus_study::stability::Row;
 use std::fmt::Write;
 
-/// Columns of a terminal that text fills.
-const WIDTH: usize = 100;
 /// Indentation of the text, columns.
 const INDENT: usize = 16;
 
@@ -59,31 +58,11 @@ fn note<'d>(notes: &mut Vec<&'d str>, detail: &'d str) -> String {
 fn entry(text: &mut String, name: &str, paragraphs: &[String]) {
     let mut name = name;
     for paragraph in paragraphs {
-        for line in wrapped(paragraph) {
+        for line in wrapped(paragraph, WIDTH - INDENT) {
             let _ = writeln!(text, "{name:INDENT$}{line}");
             name = "";
         }
     }
-}
-
-/// The words in lines that fit.
-fn wrapped(paragraph: &str) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in paragraph.split_whitespace() {
-        let room = WIDTH - INDENT;
-        if let Some(line) = lines.last_mut() {
-            let length = line.chars().count();
-            if length == 0 {
-                line.push_str(word);
-            } else if length + 1 + word.chars().count() <= room {
-                line.push(' ');
-                line.push_str(word);
-            } else {
-                lines.push(word.to_owned());
-            }
-        }
-    }
-    lines
 }
 
 #[cfg(test)]
@@ -98,19 +77,5 @@ mod tests {
         assert_eq!(note(&mut notes, "slow"), "  [1]");
         assert_eq!(note(&mut notes, ""), "");
         assert_eq!(notes, ["slow", "fast"]);
-    }
-
-    #[test]
-    fn lines_fit_and_lose_no_word() {
-        let words = "ωn·h ".repeat(60);
-        let lines = wrapped(&words);
-        assert!(lines.len() > 2);
-        assert!(
-            lines
-                .iter()
-                .all(|line| line.chars().count() <= WIDTH - INDENT)
-        );
-        assert_eq!(lines.join(" "), words.trim_end());
-        assert_eq!(wrapped(""), [""]);
     }
 }

@@ -1,9 +1,10 @@
 //! `crepitus stability --coupled`: the Z-width of the device on a leg.
 
-use crate::cli::Force;
+use super::Arguments;
 use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
 use crate::results::{self, Files, REPORT, footer, report_files};
+use crate::screen::screen;
 use crate::studying::Watch;
 use crepitus_files::json_path;
 use crepitus_study::coupled::{
@@ -57,30 +58,65 @@ fn as_rows<S: Serializer>(joints: &[Margin], serializer: S) -> Result<S::Ok, S::
 }
 
 /// Makes the map, writes the files, says what is left to the presets.
-pub(super) fn coupled(
-    out: &Path,
-    force: Force,
-    pictures: &Pictures,
-    as_json: bool,
-) -> Result<(), Failure> {
-    let claim = force.claim("stability --coupled", [""; 0]);
+pub(super) fn coupled(out: &Path, arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let claim = arguments.force.claim("stability --coupled", [""; 0]);
     let folder = results::folder(out, claim, [&REPORT[..], &FILES].concat())?;
     let study = run(&mut Watch::new()).map_err(|error| match error {
         CoupledError::Cancelled(_) => Failure::interrupted(),
         CoupledError::Run(why) => Failure::Work(format!("the study failed: {why}")),
     })?;
     let summary = summary(&study);
-    results::write(folder, out, files(&study, &summary, pictures)?)?;
+    results::write(folder, out, files(&study, &summary, &arguments.pictures)?)?;
     if as_json {
         print_json(&json!({ "out": json_path(out), "summary": summary }))?;
     } else {
-        print(&format!(
-            "{}\nreport: {}\n",
-            onsets_and_margins(&study),
-            out.join("report.html").display()
-        ))?;
+        let report = out.join("report.html");
+        let table = onsets_and_margins(&study);
+        print(&if arguments.all.all {
+            format!(
+                "{}\n\n{table}\nreport: {}\n",
+                answer(&study),
+                report.display()
+            )
+        } else {
+            let last = format!("report: {}; --all prints every line", report.display());
+            screen(&answer(&study), &table, &last)
+        })?;
     }
     judge(&study)
+}
+
+/// Whether the presets stay quiet on the device as it is, and how near the nearest comes.
+fn answer(study: &CoupledStudy) -> String {
+    let shipped = Setting::shipped().gear;
+    let here: Vec<&Margin> = study
+        .presets
+        .iter()
+        .filter(|joint| joint.setting.gear == shipped)
+        .collect();
+    let rings = here
+        .iter()
+        .filter(|joint| joint.verdict == Verdict::Rings)
+        .count();
+    let quiet = match rings {
+        0 => format!(
+            "On the device as it is every preset is quiet under a hand that rests ({} of {}).",
+            here.len(),
+            here.len()
+        ),
+        n => format!(
+            "On the device as it is {n} of {} presets ring under a hand that rests.",
+            here.len()
+        ),
+    };
+    let least = here
+        .iter()
+        .map(|joint| most_share(&joint.setting, FRICTION_NM))
+        .fold(f64::INFINITY, f64::min);
+    format!(
+        "{quiet} Up to {:.1} % of {FRICTION_NM} N·m of gear friction may be compensated with every one of them.",
+        100.0 * least
+    )
 }
 
 /// Fails if a preset rings on the device as it is.
@@ -157,7 +193,7 @@ fn onsets_and_margins(study: &CoupledStudy) -> String {
 }
 
 fn files(study: &CoupledStudy, summary: &Summary, pictures: &Pictures) -> Result<Files, Failure> {
-    let page = coupled::html(study, &words(summary));
+    let page = coupled::html(study, &words(summary, &answer(study)));
     let pictures = pictures.files(|_| coupled::pictures(study))?;
     let mut files = report_files(page, summary, pictures)?;
     let margins = [study.presets.as_slice(), &study.extras].concat();
@@ -172,16 +208,17 @@ fn files(study: &CoupledStudy, summary: &Summary, pictures: &Pictures) -> Result
     Ok(files)
 }
 
-fn words(summary: &Summary) -> StudyText {
+fn words(summary: &Summary, answer: &str) -> StudyText {
     let row = |name: &str, value: String| (name.to_owned(), value);
     let cells = &summary.cells;
     StudyText {
         title: "Where the device stays quiet on a leg".to_owned(),
-        intro: "A hand moves the leg at 0.5 rad/s, stops, and rests. Does the motor's shaft come to rest, too? Each cell \
+        intro: answer.to_owned()
+            + "\n"
+            + "A hand moves the leg at 0.5 rad/s, stops, and rests. Does the motor's shaft come to rest, too? Each cell \
                 is a run of three seconds with what the drive renders: encoder, joint, guard, limits, current loop. A \
                 rendered spring acts late and gives energy away; the damping of the cuff takes it, or the gear's dry \
-                friction, which is what the compensation removes."
-            .to_owned(),
+                friction, which is what the compensation removes.",
         tables: vec![Section {
             title: "The map".to_owned(),
             rows: vec![

@@ -1,5 +1,6 @@
 //! The files of the matrix: names and contents.
 
+use super::headline;
 use super::summary::Summary;
 use crate::failure::Failure;
 use crate::pictures::Pictures;
@@ -35,18 +36,7 @@ fn text(matrix: &Matrix, summary: &Summary<'_>) -> StudyText {
             [only] => only.case.title.to_owned(),
             _ => "Which hard cases hold".to_owned(),
         },
-        intro: format!(
-            "Inputs that break simulations of friction, put to every solver under every convention, in single and \
-             double precision. {} of {} cells hold; of the {} that must hold {}.",
-            counts.holds,
-            summary.cells,
-            counts.must_hold,
-            match counts.broken {
-                0 => "all do".to_owned(),
-                1 => "one does not".to_owned(),
-                n => format!("{n} do not"),
-            }
-        ),
+        intro: headline::answer(matrix, summary),
         tables: vec![Section {
             title: "The study".to_owned(),
             rows: vec![

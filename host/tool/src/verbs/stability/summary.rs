@@ -2,7 +2,7 @@
 
 use crate::studying;
 use crepitus_study::stability::cases_table::cases_table;
-use crepitus_study::stability::{Case, Cell, Matrix, Plan, Row, Verdict};
+use crepitus_study::stability::{Case, Cell, Matrix, Plan, Row, Rung, Verdict};
 use serde::{Serialize, Serializer};
 
 /// Version of this form.
@@ -46,7 +46,7 @@ pub(super) struct CaseSummary<'m> {
     name: &'static str,
     pub(super) title: &'static str,
     pub(super) counts: Counts,
-    /// Cell nearest to its limit, of those that must hold, and do.
+    /// Cell nearest to its limit, of those that must hold, and do, and have a number.
     #[serde(serialize_with = "as_row")]
     pub(super) narrowest: Option<CaseCell<'m>>,
 }
@@ -88,7 +88,7 @@ impl<'m> Summary<'m> {
 }
 
 impl Counts {
-    fn of(cells: &[Cell]) -> Self {
+    pub(super) fn of<'c>(cells: impl IntoIterator<Item = &'c Cell>) -> Self {
         let mut counts = Self::default();
         for cell in cells {
             match cell.verdict {
@@ -113,9 +113,10 @@ impl Counts {
 
 impl<'m> CaseSummary<'m> {
     fn new(row: &'m Row) -> Self {
-        let held = row.cells.iter().filter(|cell| cell.must_hold);
+        let others = |cell: &&Cell| cell.must_hold && cell.subject.solver != Rung::Reference;
+        let held = row.cells.iter().filter(others);
         let held = held.filter_map(|cell| match cell.verdict {
-            Verdict::Holds(margin) => Some((margin.share(), cell)),
+            Verdict::Holds(margin) if margin.is_number() => Some((margin.share(), cell)),
             _ => None,
         });
         let narrowest = held.max_by(|a, b| a.0.total_cmp(&b.0));

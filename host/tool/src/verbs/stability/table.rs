@@ -55,7 +55,8 @@ fn narrowest(case: &CaseSummary<'_>) -> String {
     });
     match (case.counts.broken, held) {
         (0, Some(held)) => held,
-        (0, None) => "none must hold".to_owned(),
+        (0, None) if case.counts.must_hold == 0 => "none must hold".to_owned(),
+        (0, None) => "met, without a number".to_owned(),
         (n, _) => format!("{n} of {} BROKEN", case.counts.must_hold),
     }
 }
