@@ -103,7 +103,7 @@ fn a_study_is_what_single_runs_say() {
     );
     let place = |what: &str| {
         first
-            .find(what)
+            .rfind(what)
             .unwrap_or_else(|| panic!("{what}: {first}"))
     };
     assert!(

@@ -86,7 +86,7 @@ fn a_whole_matrix_with_its_stories() {
             assert!(page.contains(&words), "{words}");
         }
     }
-    assert_eq!(count(&page, "role=\"img\""), 4);
+    assert_eq!(count(&page, "role=\"img\""), 5);
     assert!(!page.contains("What must hold and does not"));
 }
 
@@ -218,6 +218,7 @@ fn every_story_has_its_own_name_and_says_what_one_sees() {
         ]
     );
     for (figure, words) in figures.iter().zip([
+        ["4 breaks", "explicit Euler", "breaks once and slides on"],
         ["breaks once", "shaft, Ω", "λ²/4π at 8.0 µs"],
         ["124 times", "−Ts", "Cycles so far: 124 and 3"],
         [

@@ -59,6 +59,14 @@ fn the_actuator_brings_what_the_motor_alone_does_not() {
         (1.0, 0.9, 0.9, 35.0),
     ] {
         let found = at(speed, &[], 0);
+        // The book's row of levels, in the order of the steps.
+        let levels =
+            Step::ALL.map(|step| format!("{:+.0}", of(&found, step).level_db).replace('-', "−"));
+        let row = format!("| | level, dB | {} |", levels.join(" | "));
+        assert!(
+            include_str!("../../../docs/vibration.md").contains(&row),
+            "{row}"
+        );
         let actuator = of(&found, Step::Actuator);
         let alone = of(&found, Step::MotorAlone);
         assert!(actuator.share.unwrap() >= share, "{speed}: {actuator:?}");

@@ -40,7 +40,7 @@ pub(super) fn story(data: &ParameterChange) -> Story {
         ),
         panels: vec![
             PanelData {
-                heading: "Torque (without a limit, to show what would be asked for)".to_owned(),
+                heading: "Torque asked for, without a limit".to_owned(),
                 x: time(),
                 y: Scale::linear("Torque (N·m)").within(-1.0, 17.0),
                 series: vec![

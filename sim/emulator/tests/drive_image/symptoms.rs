@@ -124,7 +124,7 @@ pub(crate) const CASES: [Case; 10] = [
         symptom: "texture",
         settings: "patch_deg = 6.0\npatch_share = 0.5\n",
         phases: &["sliding"],
-        most_cycles: 690,
+        most_cycles: 725,
     },
     Case {
         name: "cogwheel, in time",
