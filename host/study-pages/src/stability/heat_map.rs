@@ -92,6 +92,7 @@ fn legend() -> Markup {
             }
         }
         ul.legend {
+            li { span.swatch.plain { (look::MET) } "met, without a number; or the reference" }
             li { span.swatch.(scale::DEGRADES.ground.name) { (look::DEGRADES) }
                 "degrades: right in kind, a number is above its limit" }
             li { span.swatch.(scale::FAILS.ground.name) { (look::FAILS) }

@@ -1,10 +1,11 @@
 //! One joint under three solvers.
 
 use super::{PanelData, Scale, Series, Story, mark};
+use crepitus_plot::number::rounded;
 use crepitus_study::stability::story::ThreeSolvers;
 
 const NAMES: [&str; 3] = [
-    "exact events, as on the device",
+    "exact events, the device's solver",
     "explicit Euler",
     "implicit Euler",
 ];
@@ -20,12 +21,12 @@ pub(super) fn story(data: &ThreeSolvers) -> Story {
         title: "One knee, three solvers, the device's step",
         caption: format!(
             "The paper's joint at a steady {} rad/s in steps of {:.0} µs, under physical. Exact events grate, {} breaks in a \
-             tenth of a second. Explicit Euler gains energy in every slip: its torque falls to {:.2} N·m and pushes the \
+             tenth of a second. Explicit Euler gains energy in every slip: its torque falls to {} N·m and pushes the \
              leg. Implicit Euler, which is always stable, breaks {} and slides on at Tk: the patient is healed.",
             data.omega_rad_s,
             1e6 * data.step_s,
             exact.breaks,
-            euler.least_nm(),
+            rounded(euler.least_nm()),
             if implicit.breaks == 1 {
                 "once".to_owned()
             } else {
