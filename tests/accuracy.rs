@@ -435,32 +435,7 @@ fn the_target_adds_cycles_to_points_summary_and_report() {
     assert_eq!(target["label"], label);
     // Four rungs, the check, the renderer, the encoder, ten effects and four of them in
     // their other form, the current loop.
-    let rows = target["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 22);
-    // What takes as long in every step is as on record; CREPITUS_LONG compares all of it.
-    let record = support::repository().join("sim/study/src/accuracy/target/cycles.csv");
-    let (header, record) = csv(&record);
-    let place = |name: &str| header.iter().position(|h| h == name).unwrap();
-    let mut compared = 0;
-    for row in record
-        .iter()
-        .filter(|row| number(&row[place("mean_cycles")]) == number(&row[place("worst_cycles")]))
-    {
-        let found = rows.iter().find(|found| {
-            let form = found["form"].as_str().unwrap_or_default();
-            found["subject"] == row[place("subject")] && form == row[place("form")]
-        });
-        let (found, recorded) = (
-            found.unwrap()["mean_cycles"].as_f64().unwrap(),
-            number(&row[place("mean_cycles")]),
-        );
-        assert_eq!(
-            found, recorded,
-            "docs/figures.sh makes the record again: {row:?}"
-        );
-        compared += 1;
-    }
-    assert!(compared >= 4, "{compared}");
+    assert_eq!(target["rows"].as_array().unwrap().len(), 22);
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.contains("On the device’s core") || report.contains("On the device's core"));
     assert!(report.contains(label));
@@ -468,9 +443,6 @@ fn the_target_adds_cycles_to_points_summary_and_report() {
 
 #[test]
 fn the_record_is_what_the_target_does() {
-    if std::env::var_os("CREPITUS_LONG").is_none() {
-        return;
-    }
     let home = tempfile::tempdir().unwrap();
     let out = home.path().join("study");
     let output = accuracy(&[
