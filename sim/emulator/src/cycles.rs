@@ -25,12 +25,6 @@ pub struct Cost {
     pub waits: u64,
     /// Cycles of the worst run.
     pub worst_cycles: u64,
-    /// All instructions.
-    pub instructions: u64,
-    /// Instructions of the longest run.
-    pub worst_instructions: u64,
-    /// Worst time from start to end, interruptions included.
-    pub worst_span: Time,
 }
 
 impl Cost {
@@ -39,21 +33,13 @@ impl Cost {
     pub fn mean_cycles(&self) -> f64 {
         self.cycles as f64 / self.calls.max(1) as f64
     }
-
-    /// Mean cycles of a run in which the core waited.
-    #[expect(clippy::cast_precision_loss, reason = "for people")]
-    pub fn mean_waits(&self) -> f64 {
-        self.waits as f64 / self.calls.max(1) as f64
-    }
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Run {
     exception: u16,
-    begin: Time,
     cycles: u64,
     waits: u64,
-    instructions: u64,
 }
 
 /// Cycle accounting.
@@ -131,23 +117,18 @@ impl Cycles {
     fn begin_run(&mut self, step: &Step, cycles: u64, waits: u64) {
         self.runs.push(Run {
             exception: step.exception,
-            begin: step.at,
             cycles,
             waits,
-            instructions: 0,
         });
     }
 
-    fn end(&mut self, end: Time) {
+    fn end(&mut self) {
         let Some(run) = self.runs.pop() else { return };
         let cost = self.costs.entry(run.exception).or_default();
         cost.calls += 1;
         cost.cycles += run.cycles;
         cost.waits += run.waits;
         cost.worst_cycles = cost.worst_cycles.max(run.cycles);
-        cost.instructions += run.instructions;
-        cost.worst_instructions = cost.worst_instructions.max(run.instructions);
-        cost.worst_span = cost.worst_span.max(end - run.begin);
     }
 }
 
@@ -162,15 +143,14 @@ impl Watch for Cycles {
         if let Some(run) = self.runs.last_mut() {
             run.cycles += u64::from(step.cycles);
             run.waits += u64::from(step.waits);
-            run.instructions += 1;
         }
         while depth < self.runs.len() {
-            self.end(step.at);
+            self.end();
         }
         let top = self.runs.last();
         if top.is_some_and(|run| run.exception != step.exception) {
             // Tail-chaining, charged to the first.
-            self.end(step.at);
+            self.end();
             self.begin_run(step, 0, 0);
         }
     }

@@ -1,11 +1,11 @@
 //! The vibration actuator on the drive's image: bit for bit the native drive, within its
 //! cycles, silent where it has to be, and off with its own fault while the motor goes on.
 
-use crate::budget::{TICK_CYCLES, percent};
+use crate::book::on_record;
+use crate::budget::TICK_CYCLES;
 use crate::host::{Flash, Host, image, is_long, judged};
 use crate::replay::{REGISTERS, compare};
-use crate::symptoms::{PERIOD_TICKS, added, commit, moving, worst};
-use crate::tasks::RENDER;
+use crate::symptoms::{PERIOD_TICKS, added, commit, mean, moving, worst};
 use crepitus_board::leg::CoilFaults;
 use crepitus_board::values::values;
 use crepitus_emulator::cycles::Cycles;
@@ -227,8 +227,13 @@ fn the_stage_adds_no_more_than_its_cycles() {
     commit(&mut with, on());
     let added = added(&mut with, &mut without);
     let most = added.iter().max().expect("ticks");
-    let mean = added.iter().sum::<u64>() / PERIOD_TICKS;
-    println!("vibration-actuator in render_torque: {mean} cycles more, worst {most}");
+    let mean = mean(&added);
+    on_record(
+        "`render_torque`, more with the actuator",
+        flash,
+        Some(mean),
+        *most,
+    );
     assert!(*most <= MOST_CYCLES, "{most}");
 }
 
@@ -242,18 +247,8 @@ fn a_tick_with_crepitus_a_ringing_bone_and_it_ends_within_it() {
         host.watch(PERIOD_TICKS, &mut cycles);
         let busy = cycles.worst_busy_cycles();
         let mean = cycles.mean_busy_cycles();
-        println!(
-            "all tasks with the actuator: {mean:.0} cycles of a tick, worst {busy} of {TICK_CYCLES}, {:.1} % ({})",
-            percent(busy),
-            flash.label()
-        );
-        let render = cycles.costs()[&RENDER];
-        println!(
-            "render_torque with the actuator: {:.0}, worst {} ({})",
-            render.mean_cycles(),
-            render.worst_cycles,
-            flash.label()
-        );
+        let what = "a tick with crepitus, a ringing bone and the actuator";
+        on_record(what, flash, Some(mean), busy);
         assert!(busy <= TICK_CYCLES, "{busy}");
         assert!(worst(&mut host) <= TICK_CYCLES);
     }

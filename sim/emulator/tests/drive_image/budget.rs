@@ -1,6 +1,7 @@
 //! Cycles of a tick, of 8,400: modelled with 0 wait states, and with the modelled
 //! flash. Shares of a tick are reported; a tick has to end within it.
 
+use crate::book::on_record;
 use crate::host::{Flash, Host, examination, image, is_long, judged, scene};
 use crate::tasks::RENDER;
 use crepitus_emulator::Image;
@@ -62,11 +63,8 @@ fn a_tick_with_crepitus_and_a_ringing_bone_ends_within_it() {
         let mut cycles = Cycles::default();
         host.board.watch(TICKS, &mut cycles);
         let (mean, worst) = (cycles.mean_busy_cycles(), cycles.worst_busy_cycles());
-        println!(
-            "all tasks: {mean:.0} cycles of a tick, worst {worst} of {TICK_CYCLES}, {:.1} % ({})",
-            percent(worst),
-            limits.flash.label()
-        );
+        let what = "a tick with crepitus and a ringing bone";
+        on_record(what, limits.flash, Some(mean), worst);
         assert!(worst > 1_500, "something was left out");
         assert!(worst <= TICK_CYCLES, "{worst}");
     }
@@ -84,11 +82,10 @@ fn a_tick_with_a_commit_ends_within_it() {
             worst = worst.max(worst_while_committing(&mut host, added_nm));
             host.run(37);
         }
-        println!(
-            "all tasks, with a commit: worst {worst} cycles of {TICK_CYCLES}, {:.1} % ({})",
-            percent(worst),
-            limits.flash.label()
+        let what = format!(
+            "a tick with crepitus and a ringing bone, while one of {commits} commits arrives"
         );
+        on_record(&what, limits.flash, None, worst);
         assert!(worst <= TICK_CYCLES, "{worst}");
     }
 }
@@ -139,11 +136,8 @@ fn a_tick_with_cold_caches_ends_within_it() {
             host.board.watch(2, &mut cycles);
             worst = worst.max(cycles.worst_busy_cycles());
         }
-        println!(
-            "all tasks, caches emptied: worst {worst} cycles of {TICK_CYCLES}, {:.1} % ({})",
-            percent(worst),
-            limits.flash.label()
-        );
+        let what = "a tick with crepitus and a ringing bone, caches emptied";
+        on_record(what, limits.flash, None, worst);
         assert!(worst <= TICK_CYCLES, "{worst}");
     }
 }
@@ -156,11 +150,12 @@ fn rendering_crepitus_takes_its_cycles_at_most() {
         let mut cycles = Cycles::default();
         host.board.watch(TICKS, &mut cycles);
         let cost = cycles.costs()[&RENDER];
-        println!(
-            "render_torque: {:.0} cycles, worst {} ({})",
-            cost.mean_cycles(),
-            cost.worst_cycles,
-            limits.flash.label()
+        let worst = u64::from(cost.worst_cycles);
+        on_record(
+            "`render_torque` with crepitus",
+            limits.flash,
+            Some(cost.mean_cycles()),
+            worst,
         );
         assert!(cost.worst_cycles <= limits.render_cycles, "{cost:?}");
     }

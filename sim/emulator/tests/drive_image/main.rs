@@ -1,6 +1,7 @@
 //! The drive's real image: see each module.
 
 mod actuator;
+mod book;
 mod boot;
 mod budget;
 mod code;

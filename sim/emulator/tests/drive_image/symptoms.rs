@@ -2,7 +2,8 @@
 //! moved so that everything happens to them.
 
 use crate::actuator;
-use crate::budget::{TICK_CYCLES, percent};
+use crate::book::on_record;
+use crate::budget::TICK_CYCLES;
 use crate::host::{Flash, Host, image, is_long, judged, scene_of};
 use crate::tasks::RENDER;
 use crepitus_board::values::values;
@@ -268,6 +269,11 @@ pub(crate) fn added(with: &mut Host, without: &mut Host) -> Vec<u64> {
     added.collect()
 }
 
+#[expect(clippy::cast_precision_loss, reason = "far below 2^53")]
+pub(crate) fn mean(cycles: &[u64]) -> f64 {
+    cycles.iter().sum::<u64>() as f64 / cycles.len() as f64
+}
+
 /// The first tick of the last block.
 fn last_tick(host: &Host) -> u64 {
     host.blocks.last().map_or(0, |block| block.first_tick)
@@ -305,8 +311,8 @@ fn a_symptom_adds_no_more_than_its_cycles() {
         let both = begin..last_tick(&with).min(last_tick(&without));
         assert_eq!(breaks(&with, &both), breaks(&without, &both));
         let worst = added.iter().max().expect("ticks");
-        let mean = added.iter().sum::<u64>() / PERIOD_TICKS;
-        println!("{}: {mean} cycles more, worst {worst}", case.name);
+        let what = format!("`render_torque`, more with {}", case.name);
+        on_record(&what, flash, Some(mean(&added)), *worst);
         if *worst > case.most_cycles {
             beyond.push(format!("{}: {worst}", case.name));
         }
@@ -337,12 +343,11 @@ fn a_tick_with_any_two_symptoms_ends_within_it() {
         let (first, second) = (&CASES[first], &CASES[second]);
         commit(&mut host, values_of(&[first, second]));
         let worst = worst(&mut host);
-        println!(
-            "{} and {}: worst {worst} cycles of {TICK_CYCLES}, {:.1} %",
-            first.name,
-            second.name,
-            percent(worst)
+        let what = format!(
+            "a tick with crepitus, a ringing bone, {} and {}",
+            first.name, second.name
         );
+        on_record(&what, Flash::ZeroWaitStates, None, worst);
         assert!(worst <= TICK_CYCLES, "{worst}");
     }
 }
@@ -357,15 +362,8 @@ fn a_tick_with_all_symptoms_ends_within_it() {
         let mut values = values_of(&cases);
         commit(&mut host, values);
         host.blocks.clear();
-        let label = flash.label();
-        let say = |what: &str, worst: u64| {
-            println!(
-                "{what}: worst {worst} cycles of {TICK_CYCLES}, {:.1} % ({label})",
-                percent(worst)
-            );
-        };
         let worst_tick = worst(&mut host);
-        say("all symptoms", worst_tick);
+        on_record("a tick with all symptoms", flash, None, worst_tick);
         assert!(worst_tick <= TICK_CYCLES, "{worst_tick}");
         let (id, _) = parameters::find("lead-pipe.torque_nm").expect("a parameter");
         let mut worst_commit = 0;
@@ -374,16 +372,13 @@ fn a_tick_with_all_symptoms_ends_within_it() {
             worst_commit = worst_commit.max(worst_while_committing(&mut host, values));
             host.run(437);
         }
-        say("all symptoms, with a commit", worst_commit);
+        let what = format!("a tick with all symptoms, while one of {COMMITS} commits arrives");
+        on_record(&what, flash, None, worst_commit);
         assert!(worst_commit <= TICK_CYCLES, "{worst_commit}");
         let samples = host.blocks.iter().flat_map(|block| block.samples);
         let late = samples
             .filter(|sample| sample.flags.has(SampleFlags::LATE))
             .count();
-        println!(
-            "all symptoms: {late} late samples in {} blocks ({label})",
-            host.blocks.len()
-        );
         assert_eq!(late, 0);
     }
 }

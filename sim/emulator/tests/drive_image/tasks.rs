@@ -1,5 +1,6 @@
 //! The four tasks: which interrupts which, and that none is late.
 
+use crate::book::on_record;
 use crate::host::{Flash, Host, examination, image, judged};
 use crepitus_emulator::cycles::Cycles;
 use crepitus_emulator::{Mcu, Time};
@@ -86,17 +87,9 @@ fn check(cycles: &Cycles, flash: Flash) {
         ("link", LINK, LINK_CYCLES),
     ] {
         let cost = cycles.costs()[&exception];
-        println!(
-            "{name}: {} runs, {:.0} cycles, {:.0} of them waits, worst {}, {} instructions at \
-             most, span {:.1} us ({})",
-            cost.calls,
-            cost.mean_cycles(),
-            cost.mean_waits(),
-            cost.worst_cycles,
-            cost.worst_instructions,
-            cost.worst_span.as_s() * 1e6,
-            flash.label()
-        );
+        let what = format!("`{name}`, armed with crepitus");
+        let worst = u64::from(cost.worst_cycles);
+        on_record(&what, flash, Some(cost.mean_cycles()), worst);
         if exception != LINK {
             assert!(cost.calls.abs_diff(TICKS) <= 1, "{name}: {cost:?}");
         }
