@@ -301,8 +301,8 @@ fn every_risk_names_tests_that_exist_or_says_that_it_is_open() {
     }
     for wrong in [
         "cargo test -p crepitus-nobody",
-        "cargo test -p crepitus-board --test nothing",
-        "cargo test -p crepitus-board --test fault_table nothing_of_the_kind",
+        "cargo test -p crepitus-virtual-device --test nothing",
+        "cargo test -p crepitus-virtual-device --test fault_table nothing_of_the_kind",
     ] {
         assert!(runs_nothing(wrong).is_some(), "{wrong}");
     }

@@ -4,7 +4,7 @@
 
 mod support;
 
-use crepitus_usb::pty::Pty;
+use crepitus_virtual_device::usb::pty::Pty;
 use std::fs;
 use std::io::Read;
 use std::os::fd::AsFd;

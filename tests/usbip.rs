@@ -2,7 +2,7 @@
 //! the protocol, with the project's client library on top.
 #![cfg(target_os = "linux")]
 
-#[path = "../sim/usb/tests/usbip/client.rs"]
+#[path = "../sim/virtual-device/tests/usbip/client.rs"]
 #[allow(dead_code, reason = "shared with the server's own tests")]
 mod client;
 mod support;

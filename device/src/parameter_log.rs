@@ -191,7 +191,7 @@ mod tests {
     use std::vec;
     use std::vec::Vec;
 
-    /// Flash in which writing only clears bits. `sim/board` has one whose power fails.
+    /// Flash in which writing only clears bits. `sim/virtual-device` has one whose power fails.
     #[derive(Debug)]
     struct Ram<'a> {
         bytes: &'a mut Vec<u8>,

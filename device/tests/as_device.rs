@@ -3,7 +3,6 @@
 
 mod support;
 
-use crepitus_board::values::values;
 use crepitus_model::render::Limit;
 use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::telemetry::SampleFlags;
@@ -11,6 +10,7 @@ use crepitus_protocol::{Fault, LimitReason, State};
 use crepitus_scene::reference::symptoms::NAMES;
 use crepitus_scene::scene::Overrides;
 use crepitus_scene::trace::EventRecord;
+use crepitus_scene::values::values;
 use crepitus_scene::{Observer, Scene, run};
 use std::convert::Infallible;
 use std::path::{Path, PathBuf};

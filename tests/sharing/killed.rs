@@ -1,12 +1,12 @@
 //! Programs that are killed at any instant: nothing stays driven, and every file can be read.
 
 use super::support;
-use crepitus_board::{Start, VirtualDevice};
 use crepitus_protocol::State;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_recording::Recording;
 use crepitus_scene::{Overrides, Scene};
-use crepitus_usb::pty::Pty;
+use crepitus_virtual_device::usb::pty::Pty;
+use crepitus_virtual_device::{Start, VirtualDevice};
 use std::fs;
 use std::io::Write;
 use std::path::Path;

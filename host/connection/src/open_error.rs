@@ -1,10 +1,10 @@
 //! Errors of opening a device.
 
-use crepitus_board::VirtualError;
 use crepitus_client::TransportError;
 use crepitus_client::discovery::DiscoveryError;
 use crepitus_emulator::on_target::NoTarget;
 use crepitus_scene::SceneError;
+use crepitus_virtual_device::VirtualError;
 
 /// Reason why a device cannot be opened.
 #[derive(Debug, thiserror::Error)]

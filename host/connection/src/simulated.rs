@@ -2,12 +2,12 @@
 //! time advances only while the host waits, as fast as it can or in real time.
 
 use crate::clock::Clock;
-use crepitus_board::{Start, VirtualDevice};
 use crepitus_client::{Transport, TransportError};
 use crepitus_emulator::on_target::{self, NoTarget};
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_scene::Scene;
-use crepitus_usb::cabled::CabledDevice;
+use crepitus_virtual_device::usb::cabled::CabledDevice;
+use crepitus_virtual_device::{Start, VirtualDevice};
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -37,8 +37,8 @@ impl Simulated {
     /// Creates the simulated device of a scene.
     ///
     /// # Errors
-    /// [`crepitus_board::VirtualError`] if the scene has what no device has.
-    pub fn of(scene: &Scene) -> Result<Self, crepitus_board::VirtualError> {
+    /// [`crepitus_virtual_device::VirtualError`] if the scene has what no device has.
+    pub fn of(scene: &Scene) -> Result<Self, crepitus_virtual_device::VirtualError> {
         let device = Box::new(VirtualDevice::of(scene, &Start::default())?);
         Ok(Self::cabled(device).named("a simulated device"))
     }

@@ -3,7 +3,7 @@
 #![allow(clippy::cast_possible_truncation, reason = "counts are small")]
 
 mod braces;
-#[path = "../../../sim/board/tests/support/mod.rs"]
+#[path = "../../../sim/virtual-device/tests/support/mod.rs"]
 mod support;
 
 use braces::{Truth, WEIGHED};

@@ -7,7 +7,7 @@
 
 mod braces;
 mod compared;
-#[path = "../../../sim/board/tests/support/mod.rs"]
+#[path = "../../../sim/virtual-device/tests/support/mod.rs"]
 mod support;
 
 use braces::{Truth, in_table};

@@ -1,6 +1,5 @@
 //! First message to a page: the tables that it shows, each from its one source.
 
-use crepitus_board::values::{is_effect, is_of_knee, with_preset};
 use crepitus_lesson::plans;
 use crepitus_live::{NAMED, STATES};
 use crepitus_model::render::effects::{IS_SYMPTOM, SPECS};
@@ -9,6 +8,7 @@ use crepitus_protocol::fault::FAULTS;
 use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter, When};
 use crepitus_protocol::{TICKS_PER_S, Values};
 use crepitus_scene::preset::{self, Disorder, Evidence, Preset};
+use crepitus_scene::values::{is_effect, is_of_knee, with_preset};
 use serde_json::{Value, json};
 use std::path::Path;
 

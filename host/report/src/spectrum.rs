@@ -1,5 +1,5 @@
 //! The amplitude spectrum of a torque as points to draw; how it comes about
-//! is in [`crepitus_spectrum`].
+//! is in [`crepitus_plant`].
 //!
 //! Where there is a plant the torque at the hand holds the weight of a leg,
 //! thousands of times what crepitus vibrates, which would leak from below into
@@ -8,7 +8,7 @@
 //! nothing is left would make a mountain of what leaks down from above: below
 //! [`SLOW_HZ`] the spectrum is that of the torque itself.
 
-use crepitus_spectrum as spectrum;
+use crepitus_plant::spectrum;
 
 use crepitus_plot::Point;
 

@@ -1,7 +1,7 @@
 //! A torque in, a file out: frequency, level, length, silence, what the file says of itself.
 
+use crepitus_plant::spectrum::Welch;
 use crepitus_sound::{RATE_HZ, Sound, SoundError, SoundSummary};
-use crepitus_spectrum::Welch;
 use std::f64::consts::TAU;
 use std::fs::File;
 use std::path::Path;

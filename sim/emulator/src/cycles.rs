@@ -25,6 +25,8 @@ pub struct Cost {
     pub waits: u64,
     /// Cycles of the worst run.
     pub worst_cycles: u64,
+    /// All instructions.
+    pub instructions: u64,
 }
 
 impl Cost {
@@ -40,6 +42,7 @@ struct Run {
     exception: u16,
     cycles: u64,
     waits: u64,
+    instructions: u64,
 }
 
 /// Cycle accounting.
@@ -119,6 +122,7 @@ impl Cycles {
             exception: step.exception,
             cycles,
             waits,
+            instructions: 0,
         });
     }
 
@@ -129,6 +133,7 @@ impl Cycles {
         cost.cycles += run.cycles;
         cost.waits += run.waits;
         cost.worst_cycles = cost.worst_cycles.max(run.cycles);
+        cost.instructions += run.instructions;
     }
 }
 
@@ -143,6 +148,7 @@ impl Watch for Cycles {
         if let Some(run) = self.runs.last_mut() {
             run.cycles += u64::from(step.cycles);
             run.waits += u64::from(step.waits);
+            run.instructions += 1;
         }
         while depth < self.runs.len() {
             self.end();

@@ -35,9 +35,9 @@ use crate::image::Image;
 use crate::mcu::{Mcu, Reset, Sampling, Watch};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
-use crepitus_board::leg::{CurrentPath, Leg, Terminals};
 use crepitus_device::drive::plausibility::TRIP_A;
 use crepitus_scene::Scene;
+use crepitus_virtual_device::leg::{CurrentPath, Leg, Terminals};
 use encoder_edges::Edges;
 use half_bridges::Quiet;
 use wiring::{

@@ -4,7 +4,7 @@
 use crepitus_ladder::exchange::Input;
 use crepitus_ladder::{Call, Plan};
 use crepitus_scene::Scene;
-use crepitus_usb::cabled::CabledDevice;
+use crepitus_virtual_device::usb::cabled::CabledDevice;
 
 /// Runs the steps of a plan, compares every output with the host's, and returns
 /// the cost of each; or the reason of a failure.

@@ -13,16 +13,16 @@ use crate::drive_board::DriveBoard;
 use crate::image::Image;
 use crate::mcu::{Mcu, Reset};
 use crate::state_hash::Hash;
-use crepitus_board::nor_flash::NorFlash;
-use crepitus_board::values::{NotRendered, values};
 use crepitus_device::parameter_log::{ParameterLog, Sectors as _};
 use crepitus_protocol::{Revision, Values};
 use crepitus_scene::Scene;
-use crepitus_usb::cabled::CabledDevice;
-use crepitus_usb::enumeration::EnumerationError;
-use crepitus_usb::host::{CdcHost, Traffic};
-use crepitus_usb::usbip::{Event, Server};
-use crepitus_usb::wire::{Handshake, Token, UsbWire};
+use crepitus_scene::values::{NotRendered, values};
+use crepitus_virtual_device::nor_flash::NorFlash;
+use crepitus_virtual_device::usb::cabled::CabledDevice;
+use crepitus_virtual_device::usb::enumeration::EnumerationError;
+use crepitus_virtual_device::usb::host::{CdcHost, Traffic};
+use crepitus_virtual_device::usb::usbip::{Event, Server};
+use crepitus_virtual_device::usb::wire::{Handshake, Token, UsbWire};
 use std::error::Error;
 
 /// Turns of the bus in a frame.

@@ -13,6 +13,7 @@
 //! | how listed effects become a plant | [`assembly`] |
 //! | how a plant is stepped | [`plant`], [`chain`], [`branch`], [`compliance`], [`load`], [`actuator`], [`boundary`] |
 //! | where its energy is | [`energy_balance`] |
+//! | the spectrum of what vibrates | [`spectrum`] |
 
 pub mod actuator;
 pub mod assembly;
@@ -29,6 +30,7 @@ pub mod motion;
 pub mod piece;
 pub mod plant;
 pub mod recording;
+pub mod spectrum;
 
 pub use motion::Motion;
 pub use piece::{Piece, ShaftState};

@@ -13,6 +13,7 @@
 //! | the form of a scene file, its checks and errors | [`scene`], [`error`] |
 //! | the scenes that ship | [`shipped`] |
 //! | a knee with a disorder as a file, and those that ship | [`preset`] |
+//! | the parameters of a device that renders a scene or a preset | [`values`] |
 //! | the loop, the totals, the summary | [`mod@run`] |
 //! | the motion step by step, for who steps a plant himself | [`walk`] |
 //! | columns, rows and events | [`trace`] |
@@ -33,6 +34,7 @@ pub mod scene;
 pub mod shipped;
 pub mod similar;
 pub mod trace;
+pub mod values;
 pub mod walk;
 
 pub use error::SceneError;

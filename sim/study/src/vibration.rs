@@ -18,9 +18,9 @@ pub use draws::{Draws, SPREAD, WITHIN};
 
 use crate::parallel::{Meter, each};
 use crate::watcher::{Cancelled, Watcher};
+use crepitus_plant::spectrum::cross::{Cross, Likeness};
 use crepitus_scene::Scene;
 use crepitus_scene::run::step_count;
-use crepitus_spectrum::cross::{Cross, Likeness};
 use serde::Serialize;
 use signals::{Kept, record};
 

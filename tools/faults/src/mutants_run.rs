@@ -27,7 +27,10 @@ const TESTS: [(&str, &[&str]); 3] = [
     ),
     (
         "device",
-        &["-p crepitus-device --tests", "-p crepitus-board --tests"],
+        &[
+            "-p crepitus-device --tests",
+            "-p crepitus-virtual-device --tests",
+        ],
     ),
     (
         "protocol",

@@ -21,7 +21,7 @@ const FIRMWARE_DECIDES: [&str; 8] = [
     "firmware",
     "sim/plant",
     "sim/scene",
-    "sim/board",
+    "sim/virtual-device",
     "sim/emulator",
 ];
 

@@ -1,5 +1,5 @@
 //! The two controllers, the link between them, the enable lines and a motor:
-//! ticks in the order of `crepitus_board::Board`.
+//! ticks in the order of `crepitus_virtual_device::Board`.
 
 use crate::chain::MOST_RESTARTS;
 use crate::chain::samples::{Produced, Samples};

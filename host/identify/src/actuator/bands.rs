@@ -2,7 +2,7 @@
 //! and as the fit begins from it.
 
 use crate::actuator::spectrum::Line;
-use crepitus_spectrum::Complex;
+use crepitus_plant::spectrum::Complex;
 
 /// Number of bands per octave.
 const PER_OCTAVE: f64 = 24.0;

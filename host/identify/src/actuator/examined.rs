@@ -6,7 +6,7 @@ use crate::actuator::fit::{Explained, Fit, Residual};
 use crate::actuator::refusal::Refusal;
 use crate::actuator::spectrum::{Line, Spectrum};
 use crate::actuator::{Band, Series};
-use crepitus_spectrum::Complex;
+use crepitus_plant::spectrum::Complex;
 use std::f64::consts::TAU;
 
 /// Least excitation of a band, as a share of the median of all: that of a linear

@@ -15,7 +15,7 @@ use crate::actuator::impedance::{Impedance, NUMBERS};
 use crate::actuator::second::second;
 use crate::actuator::spectrum::{Line, Spectrum};
 use crate::actuator::start::start;
-use crepitus_spectrum::Complex;
+use crepitus_plant::spectrum::Complex;
 use nalgebra::{SMatrix, SVector};
 
 /// Square matrix over the parameters.

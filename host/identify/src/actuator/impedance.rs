@@ -9,7 +9,7 @@
 //! and the current lags by a time τ, which is that of the measurement.
 
 use crate::actuator::fit::Column;
-use crepitus_spectrum::Complex;
+use crepitus_plant::spectrum::Complex;
 
 /// Number of parameters, in this order: R (Ω), L (H), b (Ω/s), ω₀ (rad/s), γ (1/s), τ (s).
 pub(crate) const NUMBERS: usize = 6;

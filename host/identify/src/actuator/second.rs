@@ -19,7 +19,7 @@
 use crate::actuator::fit::{Column, Square};
 use crate::actuator::impedance::{Impedance, NUMBERS};
 use crate::actuator::spectrum::Line;
-use crepitus_spectrum::Complex;
+use crepitus_plant::spectrum::Complex;
 use std::f64::consts::TAU;
 
 /// Steps over the band, and 2ζ of the second resonance.

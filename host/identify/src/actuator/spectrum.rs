@@ -1,7 +1,7 @@
 //! Spectral lines of voltage and current in the band of the chirp.
 
 use crate::actuator::{Band, Series};
-use crepitus_spectrum::{Complex, forward_transform};
+use crepitus_plant::spectrum::{Complex, forward_transform};
 
 /// Voltage and current at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]

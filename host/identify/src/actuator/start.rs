@@ -3,7 +3,7 @@
 
 use crate::actuator::bands::Mean;
 use crate::actuator::impedance::Impedance;
-use crepitus_spectrum::Complex;
+use crepitus_plant::spectrum::Complex;
 use nalgebra::{Matrix3, Vector3};
 
 /// Steps of the resonance over the band.

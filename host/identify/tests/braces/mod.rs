@@ -4,11 +4,11 @@
 #![allow(dead_code, reason = "each test uses its part")]
 
 use crate::support::{Heard, Host, scene};
-use crepitus_board::Start;
 use crepitus_identify::brace::{Quantity, Recording, Sample, Weight};
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::{DeviceSettings, TICK_S};
 use crepitus_recording::{Begin, Damage, Metadata, Recorder};
+use crepitus_virtual_device::Start;
 
 /// A brace that is unknown to the estimator.
 #[derive(Clone, Copy, Debug)]

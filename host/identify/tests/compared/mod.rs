@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test uses its part")]
 
-#[path = "../../../../sim/board/tests/book/mod.rs"]
+#[path = "../../../../sim/virtual-device/tests/book/mod.rs"]
 mod book;
 
 use book::Page;

@@ -4,12 +4,12 @@ use super::Keeper;
 use crate::hello;
 use crate::request::SavePreset;
 use crate::shared::Outcome;
-use crepitus_board::values::{is_of_knee, knee, with_preset};
 use crepitus_client::{Client, Transport};
 use crepitus_protocol::parameters::PARAMETERS;
 use crepitus_protocol::{DeviceSettings, Revision, Values};
 use crepitus_scene::preset::{self, Disorder, Preset};
 use crepitus_scene::scene::caps_warning;
+use crepitus_scene::values::{is_of_knee, knee, with_preset};
 use serde_json::{Value, json};
 
 /// The knee without a disorder.

@@ -7,11 +7,11 @@ mod usbip;
 use crate::failure::Failure;
 use crate::output::to_stderr;
 use clap::{Args, ValueEnum};
-use crepitus_board::{Start, VirtualDevice};
 use crepitus_emulator::on_target;
 use crepitus_scene::Overrides;
 use crepitus_scene::shipped;
-use crepitus_usb::cabled::CabledDevice;
+use crepitus_virtual_device::usb::cabled::CabledDevice;
+use crepitus_virtual_device::{Start, VirtualDevice};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 

@@ -11,7 +11,7 @@
 //! ([`Flash::busy_until`]); timers, DMA and watchdog run on.
 //!
 //! A reset ends an operation in the middle, and leaves what
-//! [`crepitus_board::nor_flash`] says.
+//! [`crepitus_virtual_device::nor_flash`] says.
 //!
 //! Not modelled: read-out and write protection, option bytes that are changed,
 //! mass erase, the interrupt; [`Flash::uses_unmodelled_features`] reports their use.
@@ -21,7 +21,7 @@ use crate::chip::bus::Now;
 use crate::chip::part::{Peripheral, lock};
 use crate::image::FLASH_BYTES;
 use crate::time::Time;
-use crepitus_board::nor_flash::{Cut, Marginal};
+use crepitus_virtual_device::nor_flash::{Cut, Marginal};
 use rsemu::core::error::BusError;
 use rsemu::core::space::{
     AccessConstraints, Mapping, MemAttrs, MemOps, MemResult, Perms, RamStore, Region, RegionRef,

@@ -4,7 +4,7 @@ use super::{BoardError, CommsSide, DriveBoard};
 use crate::mcu::Reset;
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
-use crepitus_board::leg::Leg;
+use crepitus_virtual_device::leg::Leg;
 
 impl<C: CommsSide> DriveBoard<C> {
     /// Resets of the chip since the board was switched on.

@@ -21,7 +21,7 @@ use crate::mcu::{Mcu, Pin};
 use crate::pins::{Mode, Pull};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
-use crepitus_board::leg::Terminals;
+use crepitus_virtual_device::leg::Terminals;
 
 const CR1: u32 = 0x4001_0000;
 const CR2: u32 = 0x4001_0004;

@@ -1,7 +1,7 @@
 //! The chip at the end of a USB cable.
 
 use super::Stm32f405;
-use crepitus_usb::wire::{Handshake, Token, UsbWire};
+use crepitus_virtual_device::usb::wire::{Handshake, Token, UsbWire};
 
 impl Stm32f405 {
     /// Plugs the cable in. Nothing happens until a host resets the bus.

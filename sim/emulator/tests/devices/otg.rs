@@ -1,7 +1,7 @@
 //! The USB controller, register by register (RM0090 34.16, 34.17).
 
 use crate::bench::Bench;
-use crepitus_usb::wire::{Handshake, Packet, Token, UsbWire};
+use crepitus_virtual_device::usb::wire::{Handshake, Packet, Token, UsbWire};
 
 const OTG: u32 = 0x5000_0000;
 const GUSBCFG: u32 = OTG + 0x00c;

@@ -6,8 +6,6 @@ use crate::budget::TICK_CYCLES;
 use crate::host::{Flash, Host, image, is_long, judged};
 use crate::replay::{REGISTERS, compare};
 use crate::symptoms::{PERIOD_TICKS, added, commit, mean, moving, worst};
-use crepitus_board::leg::CoilFaults;
-use crepitus_board::values::values;
 use crepitus_emulator::cycles::Cycles;
 use crepitus_emulator::mcu::Pin;
 use crepitus_emulator::pins::Pull;
@@ -15,6 +13,8 @@ use crepitus_emulator::{Mcu, Reset};
 use crepitus_protocol::host::{Answer, Operation, Status};
 use crepitus_protocol::telemetry::CoilCurrent;
 use crepitus_protocol::{CoilFault, State, Values};
+use crepitus_scene::values::values;
+use crepitus_virtual_device::leg::CoilFaults;
 
 pub(crate) const TIM8_BDTR: u32 = 0x4001_0444;
 pub(crate) const MOE: u32 = 1 << 15;

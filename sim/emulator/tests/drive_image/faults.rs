@@ -2,12 +2,12 @@
 //! the table says, measured in half ticks of the leg.
 
 use crate::host::{Host, examination, image};
-use crepitus_board::leg::{CurrentPath, CurrentSensor, EncoderWiring};
 use crepitus_emulator::drive_board::CommsSide;
 use crepitus_emulator::mcu::{Step, Watch};
 use crepitus_emulator::{Mcu, Reset, Time};
 use crepitus_protocol::fault::{FAULTS, Fault};
 use crepitus_protocol::host::{Answer, Operation};
+use crepitus_virtual_device::leg::{CurrentPath, CurrentSensor, EncoderWiring};
 
 /// The encoder's counter.
 const TIM5_CNT: u32 = 0x4000_0c24;

@@ -1,7 +1,6 @@
 //! A host at the USB end of the native comms.
 
 use crate::locks::LockCheck;
-use crepitus_board::values::values;
 use crepitus_device::usb_port::HostBytes;
 use crepitus_emulator::drive_board::NativeComms;
 use crepitus_emulator::firmware::{Program, image_for_test};
@@ -12,6 +11,7 @@ use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request};
 use crepitus_protocol::link::DriveRefusal;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Lane, Nonce, Revision, Session};
+use crepitus_scene::values::values;
 use crepitus_scene::{Overrides, Scene};
 use std::path::Path;
 

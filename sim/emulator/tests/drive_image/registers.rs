@@ -4,7 +4,7 @@ use crate::host::image;
 use crepitus_emulator::firmware::{Program, image_for_test};
 use crepitus_emulator::registers::tables;
 use crepitus_emulator::{Image, Mcu, Stm32f405, Time};
-use crepitus_usb::host::CdcHost;
+use crepitus_virtual_device::usb::host::CdcHost;
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -6,7 +6,6 @@ use crate::book::on_record;
 use crate::budget::TICK_CYCLES;
 use crate::host::{Flash, Host, image, is_long, judged, scene_of};
 use crate::tasks::RENDER;
-use crepitus_board::values::values;
 use crepitus_emulator::cycles::Cycles;
 use crepitus_emulator::mcu::{Step, Watch};
 use crepitus_emulator::{Mcu, Time};
@@ -15,6 +14,7 @@ use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, SampleFlags};
 use crepitus_protocol::{Revision, Values, parameters};
 use crepitus_scene::Scene;
+use crepitus_scene::values::values;
 use std::fmt::Write as _;
 use std::ops::Range;
 

@@ -4,7 +4,7 @@
 use crate::host::MS;
 use crate::usb::{GET_LINE_CODING, PIPE, SET_LINE_CODING, descriptor, plugged_in, read, write};
 use crepitus_emulator::Pair;
-use crepitus_usb::wire::{Handshake, Token, UsbWire};
+use crepitus_virtual_device::usb::wire::{Handshake, Token, UsbWire};
 
 const TOKEN: Token = Token {
     address: PIPE.address,

@@ -1,7 +1,7 @@
 //! Both images together, over USB: what a host's program sees of the firmware
 //! that is flashed.
 
-#[path = "../../../usb/tests/usbip/client.rs"]
+#[path = "../../../virtual-device/tests/usbip/client.rs"]
 #[allow(dead_code)] // Shared with the server's own tests.
 mod client;
 mod faults;

@@ -2,7 +2,6 @@
 //! or the new ones, and can be saved again.
 
 use crate::host::{Host, boards, client, connected, images, run, scene};
-use crepitus_board::nor_flash::NorFlash;
 use crepitus_device::parameter_log::{
     ParameterLog, RECORDS_PER_SECTOR, SECTOR_BYTES, SLOT_BYTES, Sectors as _,
 };
@@ -11,6 +10,7 @@ use crepitus_emulator::pair::{Boards, PARAMETERS};
 use crepitus_emulator::{Mcu, Pair};
 use crepitus_protocol::parameters::id::STATIC_TORQUE;
 use crepitus_protocol::{Revision, Values};
+use crepitus_virtual_device::nor_flash::NorFlash;
 use std::ops::Range;
 use std::time::Duration;
 

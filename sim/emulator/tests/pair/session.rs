@@ -1,12 +1,12 @@
 //! A session from the first handshake to the stop.
 
 use crate::host::{MS, arm, boards, client, connected, images, run, scene, ticks_until_off};
-use crepitus_board::leg::CurrentPath;
 use crepitus_client::Event;
 use crepitus_emulator::{Mcu, Pair};
 use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::parameters::id::STATIC_TORQUE;
 use crepitus_protocol::{Revision, State};
+use crepitus_virtual_device::leg::CurrentPath;
 use std::time::Duration;
 
 /// The value that tests set.

@@ -4,9 +4,9 @@ use crate::client::{Client, Reply, setup};
 use crate::host::{MS, pair};
 use crepitus_emulator::Pair;
 use crepitus_emulator::mcu::Reset;
-use crepitus_usb::cabled::CabledDevice as _;
-use crepitus_usb::usbip::Server;
-use crepitus_usb::wire::UsbWire as _;
+use crepitus_virtual_device::usb::cabled::CabledDevice as _;
+use crepitus_virtual_device::usb::usbip::Server;
+use crepitus_virtual_device::usb::wire::UsbWire as _;
 
 /// The pair with a server.
 struct Bench {

@@ -22,9 +22,9 @@ use crepitus_model::solver::locate::{ExactEvents, Locate};
 use crepitus_model::{
     Frozen, Real, Settings, SettingsError, ShaftStep, StepCoefficients, StickSlip,
 };
+use crepitus_plant::spectrum::cross::Cross;
 use crepitus_scene::cpu_time;
 use crepitus_scene::scene::Precision;
-use crepitus_spectrum::cross::Cross;
 use crepitus_table::Table;
 use crepitus_table::show::{fixed, microseconds, scientific};
 use serde::Serialize;

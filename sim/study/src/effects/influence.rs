@@ -1,7 +1,7 @@
 //! Statistics of a torque over a run, and of its difference from another.
 
 use crepitus_model::Real;
-use crepitus_spectrum::Welch;
+use crepitus_plant::spectrum::Welch;
 use serde::Serialize;
 
 /// Frequency bands in use for the vibration of joints, Hz.

@@ -5,8 +5,8 @@ use super::{BAND_HZ, MOST_LAG_S};
 use crate::random::Random;
 use crepitus_model::Real;
 use crepitus_plant::effect::Part;
+use crepitus_plant::spectrum::cross::Cross;
 use crepitus_scene::Scene;
-use crepitus_spectrum::cross::Cross;
 use serde::Serialize;
 use std::fmt;
 

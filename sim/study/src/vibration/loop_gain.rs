@@ -24,8 +24,8 @@
 use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
 use crepitus_plant::effect::Given;
 use crepitus_plant::effects::{cuff, drivetrain, hand, limb, reaction_mass, shell};
+use crepitus_plant::spectrum::Complex;
 use crepitus_scene::Scene;
-use crepitus_spectrum::Complex;
 use serde::Serialize;
 use std::f64::consts::TAU;
 

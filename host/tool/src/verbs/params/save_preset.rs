@@ -6,9 +6,9 @@ use crate::line::{connect, failure};
 use crate::own_presets;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use crepitus_board::values::knee;
 use crepitus_files::json_path;
 use crepitus_scene::preset::{Disorder, Level};
+use crepitus_scene::values::knee;
 use serde_json::json;
 
 /// Save the device's knee as a preset of one's own.

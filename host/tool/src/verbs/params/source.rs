@@ -2,11 +2,11 @@
 
 use crate::failure::Failure;
 use crate::own_presets;
-use crepitus_board::values::{with_preset, with_scene};
 use crepitus_protocol::Values;
 use crepitus_scene::preset::{self, Knee, Preset};
 use crepitus_scene::shipped::{self, Shipped};
 use crepitus_scene::similar::{self, question};
+use crepitus_scene::values::{with_preset, with_scene};
 use crepitus_scene::{Overrides, Scene};
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! The device as a serial port, on a system without pseudo terminals: there is none.
 
 use crate::failure::Failure;
-use crepitus_usb::cabled::CabledDevice;
+use crepitus_virtual_device::usb::cabled::CabledDevice;
 
 /// Refuses every name.
 pub(super) fn check(_: &str) -> Result<(), Failure> {

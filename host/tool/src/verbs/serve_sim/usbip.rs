@@ -5,7 +5,7 @@ use crate::interrupt;
 use crate::output::to_stderr;
 use crate::safe_text::message;
 use crepitus_connection::Clock;
-use crepitus_usb::usbip::{Event, Server};
+use crepitus_virtual_device::usb::usbip::{Event, Server};
 use serde_json::json;
 use std::io::ErrorKind;
 use std::net::{IpAddr, SocketAddr};

@@ -4,7 +4,7 @@ use super::endpoints::STUP;
 use super::fifo::Kind;
 use super::{ENDPOINTS, Otg, State, USBRST, WKUPINT};
 use crate::chip::part::lock;
-use crepitus_usb::wire::{Handshake, Packet, Token, UsbWire};
+use crepitus_virtual_device::usb::wire::{Handshake, Packet, Token, UsbWire};
 
 impl Otg {
     /// Returns whether a hub reports a device.
