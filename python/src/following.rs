@@ -3,8 +3,8 @@
 
 use crate::errors;
 use crate::signals::Signals;
+use crepitus_client::connection::{Connection, device_text, is_input};
 use crepitus_client::{Client, Error, Event};
-use crepitus_connection::{Connection, device_text, is_input};
 use crepitus_protocol::telemetry::Block;
 use pyo3::PyErr;
 use pyo3::exceptions::PyValueError;

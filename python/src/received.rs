@@ -2,8 +2,8 @@
 
 use crate::errors;
 use crate::following::{failure, follow};
+use crepitus_client::connection::Connection;
 use crepitus_client::{Accounting, Client};
-use crepitus_connection::Connection;
 use crepitus_recording::{Begin, RecordError, Recorder};
 use pyo3::prelude::*;
 use serde_json::{Value, json};

@@ -1,7 +1,7 @@
 //! Scenes and presets that ship, and the parameters of a device, as JSON.
 
 use crate::errors;
-use crepitus_connection::parameters::described;
+use crepitus_client::connection::parameters::described;
 use crepitus_protocol::parameters::PARAMETERS;
 use crepitus_scene::shipped::SHIPPED;
 use crepitus_scene::{Overrides, preset};

@@ -41,6 +41,8 @@
 //!
 //! | to find | look in |
 //! |---|---|
+//! | the device that a name means: attached, served, simulated, emulated | [`connection`] |
+//! | one device for several programs | [`sharing`] |
 //! | discovery of devices | [`discovery`] |
 //! | a port: its holder, errors of opening | [`Serial`], [`TransportError`] |
 //! | errors, with remedies | [`Error`], [`Refused`], [`Mismatch`], [`fault_text`], [`coil_fault_text`] |
@@ -52,6 +54,7 @@
 
 mod accounting;
 mod client;
+pub mod connection;
 pub mod discovery;
 mod errors;
 mod event;
@@ -67,6 +70,7 @@ mod requests;
 mod round_trips;
 mod serial;
 mod session;
+pub mod sharing;
 mod transport;
 pub mod values;
 mod wire;

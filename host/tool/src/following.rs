@@ -9,8 +9,8 @@ use crate::interrupt;
 use crate::line::{Line, failure, failure_with};
 use crate::output::to_stderr;
 use clap::Args;
+use crepitus_client::connection::device_text;
 use crepitus_client::{Begin, Client, Error, Event};
-use crepitus_connection::device_text;
 use crepitus_protocol::State;
 use crepitus_protocol::telemetry::Block;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -242,7 +242,7 @@ fn reconnect(
 mod tests {
     use super::*;
     use crepitus_client::Transport;
-    use crepitus_connection::Simulated;
+    use crepitus_client::connection::Simulated;
     use crepitus_scene::Overrides;
     use crepitus_scene::shipped;
     use std::path::Path;

@@ -3,13 +3,13 @@
 use crate::cli::DeviceArguments;
 use crate::failure::Failure;
 use crate::following::Arming;
+pub(crate) use crepitus_client::connection::Connection as Line;
+use crepitus_client::connection::{OpenError, is_in_this_process, is_input};
+use crepitus_client::sharing::Program;
 use crepitus_client::{Client, Error, Management, RequestKind, TransportError};
-pub(crate) use crepitus_connection::Connection as Line;
-use crepitus_connection::{OpenError, is_in_this_process, is_input};
 use crepitus_protocol::Session;
 use crepitus_protocol::host::Refusal;
 use crepitus_scene::{Overrides, Scene, shipped};
-use crepitus_sharing::Program;
 use std::path::Path;
 
 /// The scene of a device in this process.

@@ -87,7 +87,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     let source = Source::Device {
         name: client.port(),
-        serial: crepitus_connection::device_text::serial(&client.handshake().comms),
+        serial: crepitus_client::connection::device_text::serial(&client.handshake().comms),
     };
     let panel = Panel::open(settings, &source).map_err(Failure::input)?;
     let _opened = announce(&panel, arguments, as_json)?;

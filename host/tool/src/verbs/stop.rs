@@ -4,7 +4,7 @@ use crate::cli::DeviceArguments;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::line::{attached, failure, manage_to_stop, named};
 use clap::Args;
-use crepitus_sharing::Program;
+use crepitus_client::sharing::Program;
 use serde_json::json;
 use std::thread;
 

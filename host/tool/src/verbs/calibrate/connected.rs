@@ -4,7 +4,7 @@ use super::finding::{Finding, Verdict};
 use crate::failure::Failure;
 use crate::line::{Line, failure};
 use crepitus_client::Client;
-use crepitus_connection::device_text;
+use crepitus_client::connection::device_text;
 use crepitus_protocol::State;
 
 /// Identity of the device, and whether it is ready: no fault, not armed.

@@ -6,8 +6,8 @@ use super::step::Step;
 use crate::failure::Failure;
 use crate::following::disarming;
 use crate::line::{Line, failure};
+use crepitus_client::connection::device_text;
 use crepitus_client::{Client, Error};
-use crepitus_connection::device_text;
 use crepitus_protocol::Fault;
 
 /// Arms with all effects off: the drive pushes, and compares the encoder with the motor by itself.

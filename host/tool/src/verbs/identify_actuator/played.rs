@@ -258,7 +258,7 @@ impl Follower for Listening {
 mod tests {
     use super::*;
     use crepitus_client::Transport;
-    use crepitus_connection::Simulated;
+    use crepitus_client::connection::Simulated;
     use crepitus_model::control::chirp::ChirpSettings;
     use crepitus_protocol::State;
     use crepitus_protocol::parameters::find;

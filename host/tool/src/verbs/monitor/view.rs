@@ -1,7 +1,7 @@
 //! View of the monitor: its content and its drawing.
 
 use crepitus_client::Accounting;
-use crepitus_connection::device_text;
+use crepitus_client::connection::device_text;
 use crepitus_live::{Aim, Bin, Marks, Pace, STATES, Span as Extremes, Verdict};
 use crepitus_protocol::State;
 use crepitus_protocol::host::Status;

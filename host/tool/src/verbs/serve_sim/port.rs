@@ -2,8 +2,8 @@
 
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
+use crepitus_client::connection::{Clock, is_port};
 use crepitus_client::discovery::{ServedName, user_folder};
-use crepitus_connection::{Clock, is_port};
 use crepitus_files::json_path;
 use crepitus_virtual_device::usb::cabled::CabledDevice;
 use crepitus_virtual_device::usb::pty::Pty;

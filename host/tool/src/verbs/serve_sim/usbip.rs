@@ -4,7 +4,7 @@ use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
 use crate::output::to_stderr;
 use crate::safe_text::message;
-use crepitus_connection::Clock;
+use crepitus_client::connection::Clock;
 use crepitus_virtual_device::usb::usbip::{Event, Server};
 use serde_json::json;
 use std::io::ErrorKind;

@@ -1,7 +1,7 @@
 //! Errors of opening a device.
 
-use crepitus_client::TransportError;
-use crepitus_client::discovery::DiscoveryError;
+use crate::TransportError;
+use crate::discovery::DiscoveryError;
 use crepitus_emulator::on_target::NoTarget;
 use crepitus_scene::SceneError;
 use crepitus_virtual_device::VirtualError;

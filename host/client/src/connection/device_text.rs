@@ -1,6 +1,6 @@
 //! Identity, status and faults of a device, as text and as JSON.
 
-use crepitus_client::{Handshake, coil_fault_text, fault_text};
+use crate::{Handshake, coil_fault_text, fault_text};
 use crepitus_protocol::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
 use crepitus_protocol::host::{Counters, Status};
 use crepitus_protocol::management::Identity;

@@ -1,7 +1,7 @@
 //! Meeting place of the programs that share a device: a socket and a lock in the user's
 //! folder, named after the device.
 
-use crepitus_client::discovery::{self, DeviceKind};
+use crate::discovery::{self, DeviceKind};
 use crepitus_protocol::frame::CRC;
 use std::fs::{self, File, TryLockError};
 use std::io;

@@ -200,7 +200,7 @@ fn expect(stream: &mut TcpStream, proof: &str) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::socket::arrival;
+    use crate::sharing::socket::arrival;
     use std::thread;
 
     fn listening() -> (tempfile::TempDir, PathBuf, Listener) {

@@ -1,6 +1,6 @@
 //! Parameters by name, and as JSON.
 
-use crepitus_client::values::{full_name, show_value};
+use crate::values::{full_name, show_value};
 use crepitus_protocol::parameters::{self, Kind, PARAMETERS, Parameter, When};
 use serde_json::{Value, json};
 

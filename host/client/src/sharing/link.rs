@@ -1,8 +1,8 @@
 //! The connection of a program to the hub.
 
-use crate::frames::Frames;
-use crate::note::Note;
-use crate::socket::Stream;
+use crate::sharing::frames::Frames;
+use crate::sharing::note::Note;
+use crate::sharing::socket::Stream;
 use crepitus_protocol::Decoder;
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -136,7 +136,7 @@ fn note_of(frame: &[u8]) -> Option<Note> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::socket::{Listener, arrival, connect};
+    use crate::sharing::socket::{Listener, arrival, connect};
     use std::thread;
     use std::time::Instant;
 
@@ -163,7 +163,7 @@ mod tests {
         let path = folder.path().join("socket");
         let listener = Listener::at(&path).unwrap();
         let heir = Note::Heir {
-            open: crate::left_open::LeftOpen::default(),
+            open: crate::sharing::left_open::LeftOpen::default(),
             is_armed: true,
         };
         for (leaves, is_cut, is_left) in [

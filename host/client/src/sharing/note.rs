@@ -1,7 +1,7 @@
 //! Messages between programs that share a device: frames of a lane that the
 //! device does not have. The hub never passes them on.
 
-use crate::left_open::LeftOpen;
+use crate::sharing::left_open::LeftOpen;
 use crepitus_protocol::Session;
 use crepitus_protocol::decoder::Body;
 use crepitus_protocol::frame::{self, BODY_BYTES, Frame};

@@ -9,13 +9,13 @@
 //! It ends with its owner, or when the port fails. Then every program is notified, and
 //! the lock falls to one of them.
 
-use crate::frames::Frames;
-use crate::held::Held;
-use crate::left_open::requests_in;
-use crate::member::{Chunk, Member};
-use crate::note::Note;
-use crate::socket::{Arrival, Stream};
-use crepitus_client::{Transport, TransportError};
+use crate::sharing::frames::Frames;
+use crate::sharing::held::Held;
+use crate::sharing::left_open::requests_in;
+use crate::sharing::member::{Chunk, Member};
+use crate::sharing::note::Note;
+use crate::sharing::socket::{Arrival, Stream};
+use crate::{Transport, TransportError};
 use crepitus_protocol::Decoder;
 use crepitus_protocol::frame::Frame;
 use std::collections::BTreeMap;
@@ -362,10 +362,10 @@ fn write_all(mut stream: &Stream, inbox: &Receiver<Chunk>) {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::link::Link;
-    use crate::note::Program;
-    use crate::place::Place;
-    use crate::socket::connect;
+    use crate::sharing::link::Link;
+    use crate::sharing::note::Program;
+    use crate::sharing::place::Place;
+    use crate::sharing::socket::connect;
     use crepitus_protocol::host::{Operation, Request};
     use crepitus_protocol::{Lane, Nonce, Session, frame};
     use std::fs;

@@ -1,11 +1,11 @@
 //! Transport to a device by its name.
 
-use crate::open_error::OpenError;
-use crate::simulated::Simulated;
-use crepitus_client::discovery::{self, Device, DeviceKind};
-use crepitus_client::{Serial, Transport, TransportError};
+use crate::connection::open_error::OpenError;
+use crate::connection::simulated::Simulated;
+use crate::discovery::{self, Device, DeviceKind};
+use crate::sharing::{Program, Shared};
+use crate::{Serial, Transport, TransportError};
 use crepitus_scene::{Scene, SceneError};
-use crepitus_sharing::{Program, Shared};
 use std::path::Path;
 use std::time::Duration;
 
@@ -210,7 +210,7 @@ impl Transport for Connection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_client::{Client, Error, Event};
+    use crate::{Client, Error, Event};
     use crepitus_scene::{Overrides, shipped};
 
     fn scene() -> Result<Scene, SceneError> {
@@ -292,7 +292,7 @@ mod tests {
     #[test]
     fn the_readme_shows_that_test() {
         let (readme, here) = (
-            include_str!("../../../README.md"),
+            include_str!("../../../../README.md"),
             include_str!("connection.rs"),
         );
         let shown: Vec<&str> = readme

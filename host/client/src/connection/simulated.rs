@@ -1,8 +1,8 @@
 //! A simulated device in this process, or an emulated one, as a transport. Its
 //! time advances only while the host waits, as fast as it can or in real time.
 
-use crate::clock::Clock;
-use crepitus_client::{Transport, TransportError};
+use crate::connection::clock::Clock;
+use crate::{Transport, TransportError};
 use crepitus_emulator::on_target::{self, NoTarget};
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_scene::Scene;

@@ -1,7 +1,7 @@
 //! A connected program, as the hub knows it.
 
-use crate::left_open::LeftOpen;
-use crate::note::Program;
+use crate::sharing::left_open::LeftOpen;
+use crate::sharing::note::Program;
 use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, TrySendError};
 

@@ -1,6 +1,6 @@
 //! Classification of failed requests: invalid input or failed work.
 
-use crepitus_client::Error;
+use crate::Error;
 use crepitus_protocol::ValueError;
 use crepitus_protocol::host::Refusal;
 

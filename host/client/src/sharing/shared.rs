@@ -1,15 +1,15 @@
 //! The transport of a program that shares a device.
 
-use crate::frames::Frames;
-use crate::held::Held;
-use crate::hub::{Hub, STOPPED_MS};
-use crate::left_open::{LeftOpen, requests_in};
-use crate::link::Link;
-use crate::note::{Note, Program};
-use crate::place::Place;
-use crate::socket::connect;
-use crepitus_client::discovery::{self, PseudoTerminal, pseudo_terminal};
-use crepitus_client::{Serial, Transport, TransportError};
+use crate::discovery::{self, PseudoTerminal, pseudo_terminal};
+use crate::sharing::frames::Frames;
+use crate::sharing::held::Held;
+use crate::sharing::hub::{Hub, STOPPED_MS};
+use crate::sharing::left_open::{LeftOpen, requests_in};
+use crate::sharing::link::Link;
+use crate::sharing::note::{Note, Program};
+use crate::sharing::place::Place;
+use crate::sharing::socket::connect;
+use crate::{Serial, Transport, TransportError};
 use crepitus_protocol::host::{Operation, Request};
 use std::io::{self, ErrorKind};
 use std::path::Path;
@@ -114,7 +114,7 @@ impl Shared {
         }
         Some(TransportError::Hangs {
             port: self.port.clone(),
-            holder: crepitus_client::holder_of(&self.port),
+            holder: crate::holder_of(&self.port),
         })
     }
 
@@ -188,7 +188,7 @@ impl Shared {
             }
             Err(error) if is_timeout(&error) => Err(TransportError::Hangs {
                 port: self.port.clone(),
-                holder: crepitus_client::holder_of(&self.port),
+                holder: crate::holder_of(&self.port),
             }),
             // It has just ended.
             Err(_) => Ok(false),
@@ -321,8 +321,8 @@ fn lost(port: &str) -> TransportError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hub::tests::served_at;
-    use crate::socket::{Listener, arrival};
+    use crate::sharing::hub::tests::served_at;
+    use crate::sharing::socket::{Listener, arrival};
     use crepitus_protocol::{Lane, Nonce, Session, frame};
     use std::io::Write;
 

@@ -1,7 +1,7 @@
 //! A hub's part of the place where programs meet: its lock and its socket.
 
-use crate::place::Place;
-use crate::socket::{Arrival, Listener};
+use crate::sharing::place::Place;
+use crate::sharing::socket::{Arrival, Listener};
 use std::fs::File;
 use std::io;
 
