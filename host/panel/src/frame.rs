@@ -8,8 +8,8 @@
 //! All little endian; N·m, rad/s, rad. `number` counts the frames of the live view, which
 //! the page answers; in a trace it is the request's.
 
+use crate::live::{Bin, Span};
 use axum::body::Bytes;
-use crepitus_live::{Bin, Span};
 
 /// Version of the layout.
 const VERSION: u8 = 1;
@@ -102,7 +102,7 @@ fn append(out: &mut Vec<u8>, bin: &Bin, masks: Masks) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_live::Envelope;
+    use crate::live::Envelope;
     use crepitus_recording::Row;
 
     fn header(masks: Masks) -> Header {

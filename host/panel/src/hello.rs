@@ -1,7 +1,7 @@
 //! First message to a page: the tables that it shows, each from its one source.
 
-use crepitus_lesson::plans;
-use crepitus_live::{NAMED, STATES};
+use crate::lesson::plans;
+use crate::live::{NAMED, STATES};
 use crepitus_model::render::effects::{IS_SYMPTOM, SPECS};
 use crepitus_protocol::coil::COIL_FAULTS;
 use crepitus_protocol::fault::FAULTS;
@@ -51,7 +51,7 @@ pub(crate) fn tables(source: &Value, sessions: Option<&Path>) -> Value {
             }))
         }).collect::<Vec<_>>(),
         "stores": sessions.map(|folder| folder.display().to_string()),
-        "students_max": crepitus_lesson::MOST_STUDENTS,
+        "students_max": crate::lesson::MOST_STUDENTS,
     })
 }
 

@@ -23,11 +23,11 @@ mod tests;
 mod torque_end;
 
 use crate::frame::{Header, Kind, Masks, frame};
+use crate::live::{Aim, Envelope, Pace, Target};
 use crate::request::{AimAt, Request};
 use crate::shared::{Latest, Order, Outcome, Shared};
 use axum::extract::ws::Utf8Bytes;
 use crepitus_client::{Client, Error, Event, Transport};
-use crepitus_live::{Aim, Envelope, Pace, Target};
 use crepitus_protocol::telemetry::{Block, SampleFlags};
 use crepitus_protocol::{Revision, Session, TICKS_PER_S, Values};
 use crepitus_recording::Samples;
@@ -443,7 +443,7 @@ impl<'p, T: Transport> Keeper<'p, T> {
         let target = match target {
             None => None,
             Some(AimAt::Named(name)) => Some(Target::find(&name).ok_or_else(|| {
-                let names: Vec<_> = crepitus_live::NAMED.iter().map(|t| t.name).collect();
+                let names: Vec<_> = crate::live::NAMED.iter().map(|t| t.name).collect();
                 format!("no target {name:?}: expected one of {}", names.join(", "))
             })?),
             Some(AimAt::Beat { beats_per_min }) => Some(own(Aim::Metronome { beats_per_min })?),

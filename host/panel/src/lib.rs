@@ -20,6 +20,8 @@
 //! | who turns torque off when a page hangs | `watchdog.rs` |
 //! | the layout of frames | `frame.rs` |
 //! | the tables that a page shows | `hello.rs`, `book.rs` |
+//! | lessons: plans, blind trials, scores, folders of sessions | [`lesson`] |
+//! | what a live view shows: envelope, states, target speeds | [`live`] |
 //! | the page itself | `assets` |
 #![forbid(unsafe_code)]
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -33,6 +35,8 @@ mod frame;
 mod guard;
 mod hello;
 mod keeper;
+pub mod lesson;
+pub mod live;
 mod panel;
 mod pending;
 mod replay;

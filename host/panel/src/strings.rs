@@ -34,7 +34,7 @@ impl Strings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_live::STATES;
+    use crate::live::STATES;
     use crepitus_protocol::parameters::PARAMETERS;
     use crepitus_scene::preset::Disorder;
     use std::collections::BTreeSet;
@@ -79,7 +79,7 @@ mod tests {
     fn a_report_finds_its_texts() {
         for (language, _) in LANGUAGES {
             let strings = Strings::of(language);
-            for key in crepitus_lesson::report::KEYS {
+            for key in crate::lesson::report::KEYS {
                 assert_ne!(strings.text(key), *key, "{language}");
             }
         }

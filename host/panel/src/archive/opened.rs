@@ -1,7 +1,7 @@
 //! A recording that is open.
 
-use crepitus_lesson::{By, Session};
-use crepitus_live::{Bin, Bins};
+use crate::lesson::{By, Session};
+use crate::live::{Bin, Bins};
 use crepitus_protocol::parameters::{Kind, PARAMETERS};
 use crepitus_protocol::{TICKS_PER_S, Values};
 use crepitus_recording::{Recording, named_values, seconds};
@@ -249,7 +249,7 @@ fn joined(bins: &[(u64, Bin)], rows: u32, from_s: f64, to_s: f64, points: u16) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_live::Marks;
+    use crate::live::Marks;
     use crepitus_recording::Row;
 
     fn bins(ticks: impl Iterator<Item = u64>, rows: u32) -> Numbered {

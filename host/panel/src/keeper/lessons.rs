@@ -3,15 +3,15 @@
 use super::Keeper;
 use super::knee::HEALTHY;
 use super::recording::extension;
+use crate::lesson::{
+    By, Feedback, Knee, Known, Lesson, MOST_SEED, Plan, Session, SessionFolder, Started, plans,
+    report,
+};
+use crate::live::Target;
 use crate::request::LessonBegin;
 use crate::shared::Outcome;
 use crate::strings::Strings;
 use crepitus_client::Transport;
-use crepitus_lesson::{
-    By, Feedback, Knee, Known, Lesson, MOST_SEED, Plan, Session, SessionFolder, Started, plans,
-    report,
-};
-use crepitus_live::Target;
 use crepitus_scene::preset::Preset;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -148,7 +148,7 @@ impl<T: Transport> Keeper<'_, T> {
             return Err(error);
         }
         if let Some(target) = target.and_then(|name| Target::find(&name)) {
-            let mut pace = crepitus_live::Pace::new(target);
+            let mut pace = crate::live::Pace::new(target);
             pace.set_scoring(true);
             self.pace = Some(pace);
             self.publish_target();

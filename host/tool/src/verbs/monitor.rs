@@ -12,7 +12,7 @@ use crate::line::{Line, failure, failure_with, holder, named, open_to_arm};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use crepitus_client::{Begin, Client};
-use crepitus_live::{Envelope, NAMED, Pace, Target};
+use crepitus_panel::live::{Envelope, NAMED, Pace, Target};
 use crepitus_protocol::host::Status;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, TICKS_PER_S};

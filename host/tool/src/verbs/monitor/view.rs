@@ -2,7 +2,7 @@
 
 use crepitus_client::Accounting;
 use crepitus_client::connection::device_text;
-use crepitus_live::{Aim, Bin, Marks, Pace, STATES, Span as Extremes, Verdict};
+use crepitus_panel::live::{Aim, Bin, Marks, Pace, STATES, Span as Extremes, Verdict};
 use crepitus_protocol::State;
 use crepitus_protocol::host::Status;
 use ratatui::Frame;
@@ -333,7 +333,7 @@ fn keys() -> Line<'static> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_live::{Envelope, Target};
+    use crepitus_panel::live::{Envelope, Target};
     use crepitus_recording::Row;
     use ratatui::Terminal;
     use ratatui::backend::TestBackend;

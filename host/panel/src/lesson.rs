@@ -1,0 +1,50 @@
+//! # Lessons
+//!
+//! ```text
+//!  TOML, JSON of the page ─> Plan ─check─> CheckedPlan ─┐
+//!  seed ─────────────────────────────────> order ───────┴─> Lesson ─> View   JSON of the page
+//!                                    answers, notes ─────────> │
+//!                                                              ├─> Summary  agreement: kappa, interval
+//!                                                              └─> Session  folder: session.json, CSV, report.html
+//! ```
+//!
+//! A lesson is a list of knees, examined one after another. In a *blind* lesson the students do
+//! not see which knee it is: each names the disorder, its level and how confident he or she is,
+//! and the lesson says afterwards how well the answers agree with the truth.
+//!
+//! [`Lesson`] is a state machine without input, output or clock: times are arguments. Only
+//! [`SessionFolder`] touches the disk.
+//!
+//! | to find | look in |
+//! |---|---|
+//! | the form of a lesson's file, the shipped lessons | [`Plan`], [`plans`] |
+//! | the order of the trials, from a seed | [`order`] |
+//! | what may be called when; what is revealed when | [`Lesson`], [`LessonError`] |
+//! | what the page shows | [`View`] |
+//! | Cohen's kappa and its interval | [`statistics`] |
+//! | files of a session | [`SessionFolder`], [`Session`] |
+//! | the page to print, and its texts | [`report`] |
+
+mod finding;
+mod folder;
+mod lesson;
+pub mod order;
+mod plan;
+pub mod plans;
+pub mod report;
+mod session;
+pub mod statistics;
+mod summary;
+mod view;
+
+pub use finding::{Finding, Knee};
+pub use folder::{FolderError, SessionFolder};
+pub use lesson::{
+    Answer, BeginError, By, LEAST_TORQUE_SHARE, Lesson, LessonError, MOST_SEED, Note,
+};
+pub use plan::{
+    CheckedPlan, Feedback, Known, MOST_STUDENTS, MOST_TRIALS, Plan, PlanError, PlannedKnee,
+};
+pub use session::{Recorded, Session, SessionError, Started};
+pub use summary::{Confusion, Interval, Scores, StudentScores, Summary};
+pub use view::{AnswerView, Choices, KneeView, View};

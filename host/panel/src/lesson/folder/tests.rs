@@ -1,0 +1,134 @@
+use super::*;
+use crate::lesson::lesson::Lesson;
+use crate::lesson::plan::Known;
+use crate::lesson::plans;
+use crate::lesson::session::Started;
+
+fn session(name: &str) -> Session {
+    let known = Known {
+        own_preset: &|_| None,
+        target: &|_| true,
+    };
+    let plan = plans::find("blind-six").unwrap().read().unwrap();
+    let lesson = Lesson::begin(name, plan.check(known).unwrap(), vec!["A".to_owned()], 3).unwrap();
+    Session::new(Started::from_unix(0).unwrap(), "0.1.0".to_owned(), lesson)
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name != crepitus_files::output::MARKER)
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn names_of_folders_are_sanitised() {
+    for (name, folder) in [
+        ("blind-six", "blind-six"),
+        ("Six knees: Monday", "six-knees-monday"),
+        ("../../etc/passwd", "etc-passwd"),
+        ("C:\\x", "c-x"),
+        ("Übung", "bung"),
+        ("…", "lesson"),
+        ("", "lesson"),
+    ] {
+        assert_eq!(sanitised(name), folder, "{name}");
+    }
+    assert_eq!(sanitised(&"x".repeat(99)).len(), 40);
+}
+
+#[test]
+fn recordings_are_named_by_trial_alone() {
+    assert_eq!(recording_name(1), "trial-01.parquet");
+    assert_eq!(recording_name(200), "trial-200.parquet");
+}
+
+#[test]
+fn a_folder_is_made_with_its_parents_and_never_shared() {
+    let parent = tempfile::tempdir().unwrap();
+    let lessons = parent.path().join("a/b");
+    let first = SessionFolder::create(&lessons, &session("x y")).unwrap();
+    let second = SessionFolder::create(&lessons, &session("x y")).unwrap();
+    assert_eq!(
+        names(&lessons),
+        ["1970-01-01-000000-x-y", "1970-01-01-000000-x-y-2"]
+    );
+    assert_ne!(first, second);
+    assert_eq!(
+        names(first.path()),
+        ["answers.csv", "notes.csv", "session.json"]
+    );
+    assert_eq!(first.recording(3), first.path().join("trial-03.parquet"));
+}
+
+#[test]
+fn a_parent_that_is_a_file_is_an_error() {
+    let parent = tempfile::tempdir().unwrap();
+    let file = parent.path().join("file");
+    fs::write(&file, "x").unwrap();
+    let error = SessionFolder::create(&file, &session("x")).unwrap_err();
+    assert!(error.to_string().contains("cannot write"), "{error}");
+}
+
+/// The disk cannot take the new file: the old one stays, and no other is left behind.
+#[test]
+fn a_file_that_cannot_be_written_leaves_the_old_one() {
+    let parent = tempfile::tempdir().unwrap();
+    let mut session = session("x");
+    let folder = SessionFolder::create(parent.path(), &session).unwrap();
+    // Nothing can be renamed over a folder that has something in it.
+    fs::remove_file(folder.path().join(ANSWERS)).unwrap();
+    fs::create_dir(folder.path().join(ANSWERS)).unwrap();
+    fs::write(folder.path().join(ANSWERS).join("x"), "x").unwrap();
+    session.lesson.start().unwrap();
+    let error = folder.save(&session).unwrap_err();
+    assert!(matches!(&error, FolderError::Write { path, .. } if path.ends_with(ANSWERS)));
+    // The session was written before.
+    assert_eq!(Session::read(folder.path()).unwrap(), session);
+    assert_eq!(
+        names(folder.path()),
+        ["answers.csv", "notes.csv", "session.json"]
+    );
+
+    fs::remove_dir_all(folder.path()).unwrap();
+    assert!(folder.save(&session).is_err());
+    assert!(folder.save_report(&session, &str::to_owned).is_err());
+}
+
+/// A teacher marks answers in a spreadsheet while the lesson goes on.
+#[test]
+fn an_edited_table_stays_and_the_answers_are_in_the_session() {
+    let parent = tempfile::tempdir().unwrap();
+    let mut session = session("x");
+    let folder = SessionFolder::create(parent.path(), &session).unwrap();
+    let answers = folder.path().join(ANSWERS);
+    fs::write(&answers, "edited").unwrap();
+    session.lesson.start().unwrap();
+    let error = folder.save(&session).unwrap_err().to_string();
+    assert!(error.contains("answers.csv (changed since"), "{error}");
+    assert_eq!(fs::read_to_string(&answers).unwrap(), "edited");
+    assert_eq!(Session::read(folder.path()).unwrap(), session);
+    fs::rename(&answers, parent.path().join("edited.csv")).unwrap();
+    folder.save(&session).unwrap();
+    folder.save(&session).unwrap();
+}
+
+#[test]
+fn what_is_no_session_cannot_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let error = Session::read(folder.path()).unwrap_err().to_string();
+    assert!(error.contains("session.json"), "{error}");
+    fs::write(folder.path().join(SESSION), "{}").unwrap();
+    let error = SessionFolder::open(folder.path()).unwrap_err();
+    assert!(matches!(error, FolderError::Session { .. }), "{error}");
+}
+
+#[test]
+fn a_spreadsheet_gets_no_formula() {
+    assert_eq!(as_text("=1+1"), "'=1+1");
+    assert_eq!(as_text("@x"), "'@x");
+    assert_eq!(as_text("1 = 1"), "1 = 1");
+}

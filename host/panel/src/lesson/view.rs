@@ -1,0 +1,185 @@
+//! The `lesson` message of the page: what may be seen of a lesson at this moment.
+//!
+//! It holds nothing that is hidden, so it can be sent to every page.
+
+use crate::lesson::finding::{Finding, Knee, level_name};
+use crate::lesson::lesson::{Answer, Lesson};
+use crate::lesson::plan::Feedback;
+use crate::lesson::summary::Summary;
+use crepitus_scene::preset::Level;
+use serde::Serialize;
+
+/// A lesson as the page shows it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+// Flags of the message, each with its own meaning.
+#[allow(clippy::struct_excessive_bools)]
+pub struct View {
+    /// Title of the plan.
+    pub title: String,
+    /// Description of the plan.
+    pub description: String,
+    /// Whether the knees are hidden.
+    pub blind: bool,
+    /// Whether the torque curves are shown while the knee is hidden.
+    pub curves: bool,
+    /// Time at which answers are judged.
+    pub feedback: Feedback,
+    /// Seed of the order.
+    pub seed: u64,
+    /// Name of the lesson.
+    pub name: String,
+    /// Folder of the session, if it is stored.
+    pub stored: Option<String>,
+    /// Pseudonyms.
+    pub students: Vec<String>,
+    /// The current trial, from 1.
+    pub trial: usize,
+    /// Number of trials.
+    pub trials: usize,
+    /// Instruction for this trial.
+    pub instruction: String,
+    /// Name of the target speed.
+    pub target: Option<String>,
+    /// Time for this trial, s.
+    pub time_s: Option<f64>,
+    /// Whether the current trial has begun.
+    pub began: bool,
+    /// The knee; `None` while it is hidden.
+    pub knee: Option<KneeView>,
+    /// Answers to all trials so far.
+    pub answers: Vec<AnswerView>,
+    /// Whether the lesson has ended.
+    pub ended: bool,
+    /// Answers that can be given.
+    pub choices: Choices,
+    /// Results, once a blind lesson has ended.
+    pub summary: Option<Summary>,
+}
+
+/// The knee of the current trial.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct KneeView {
+    /// Name of the preset, or "healthy".
+    pub preset: String,
+    /// Title of the preset.
+    pub title: String,
+    /// Disorder, if the preset says it.
+    pub disorder: Option<Finding>,
+    /// Level, if there is one.
+    #[serde(with = "level_name")]
+    pub level: Option<Level>,
+}
+
+impl From<&Knee> for KneeView {
+    fn from(knee: &Knee) -> Self {
+        let Knee {
+            preset,
+            title,
+            disorder,
+            level,
+        } = knee.clone();
+        Self {
+            preset,
+            title,
+            disorder,
+            level,
+        }
+    }
+}
+
+/// An answer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AnswerView {
+    /// Pseudonym.
+    pub student: String,
+    /// Trial, from 1.
+    pub trial: usize,
+    /// Disorder; `None` while the knee is hidden: students judge without each other.
+    pub disorder: Option<Finding>,
+    /// Level; `None` while the knee is hidden, and if none was given.
+    #[serde(with = "level_name")]
+    pub level: Option<Level>,
+    /// Confidence, 1 to 5; `None` while the knee is hidden.
+    pub confidence: Option<u8>,
+    /// Whether the disorder is right; `None` while it is hidden.
+    pub right: Option<bool>,
+    /// Whether the level is right; `None` while it is hidden, and where the knee or the answer
+    /// has no level.
+    pub level_right: Option<bool>,
+    /// Whether it counts: the motor was driven for long enough.
+    pub counts: bool,
+    /// Share of the trial's time up to it in which the motor was driven.
+    pub torque_share: Option<f64>,
+}
+
+/// Disorders and levels that can be answered.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Choices {
+    /// Disorders, "healthy" first.
+    pub disorders: Vec<&'static str>,
+    /// Levels, ascending.
+    pub levels: Vec<&'static str>,
+}
+
+impl Choices {
+    /// All.
+    pub(crate) fn all() -> Self {
+        Self {
+            disorders: Finding::all().map(Finding::name).collect(),
+            levels: Level::ALL.map(Level::name).to_vec(),
+        }
+    }
+}
+
+impl Lesson {
+    /// Visible part of the lesson; `stored` is the folder of the session, if it is stored.
+    pub fn view(&self, stored: Option<&str>) -> View {
+        let plan = self.plan();
+        let trial = self.trial();
+        let planned = self.planned(trial);
+        let own = planned.and_then(|knee| knee.instruction.as_deref());
+        let instruction = own.or(plan.instruction.as_deref()).unwrap_or_default();
+        View {
+            title: plan.title.clone(),
+            description: plan.description.clone(),
+            blind: plan.blind,
+            curves: plan.curves,
+            feedback: plan.feedback,
+            seed: self.seed(),
+            name: self.name().to_owned(),
+            stored: stored.map(str::to_owned),
+            students: self.students().to_vec(),
+            trial,
+            trials: self.trials(),
+            instruction: instruction.to_owned(),
+            target: planned.and_then(|knee| knee.target.clone()),
+            time_s: planned.and_then(|knee| knee.time_s),
+            began: self.began(),
+            knee: (!self.is_hidden()).then(|| KneeView::from(self.knee())),
+            answers: self.answers().iter().map(|a| self.judged(a)).collect(),
+            ended: self.ended(),
+            choices: Choices::all(),
+            summary: (plan.blind && self.ended()).then(|| Summary::of(self)),
+        }
+    }
+
+    /// An answer, judged as far as the knee is revealed.
+    fn judged(&self, answer: &Answer) -> AnswerView {
+        let revealed = self.is_revealed(answer.trial);
+        let knee = self.knee_of(answer.trial);
+        AnswerView {
+            student: answer.student.clone(),
+            trial: answer.trial,
+            disorder: revealed.then_some(answer.disorder),
+            level: answer.level.filter(|_| revealed),
+            confidence: revealed.then_some(answer.confidence),
+            right: revealed.then(|| answer.is_right(knee)),
+            level_right: answer.is_level_right(knee).filter(|_| revealed),
+            counts: answer.counts(),
+            torque_share: answer.torque_share,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
