@@ -4,7 +4,7 @@ mod support;
 
 use crepitus_identify::actuator::{MassEvidence, Weighed, chart, identify};
 use crepitus_model::control::chirp::ChirpSettings;
-use crepitus_plot::pictures;
+use crepitus_pages::plot::pictures;
 use support::{NOMINAL, band};
 
 #[test]

@@ -17,7 +17,7 @@ mod smallest;
 mod spots;
 mod table;
 
-use crepitus_plot::{Figure, Paper, pictures as of_figures};
+use crepitus_pages::plot::{Figure, Paper, pictures as of_figures};
 use crepitus_study::effects::EffectsStudy;
 
 use crate::{Picture, StudyText, story};

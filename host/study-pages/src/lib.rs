@@ -23,8 +23,8 @@ pub mod stability;
 pub mod story;
 pub mod vibration;
 
-pub use crepitus_plot::page::Section;
-pub use crepitus_plot::{Column, Paper, Picture};
+pub use crepitus_pages::plot::page::Section;
+pub use crepitus_pages::plot::{Column, Paper, Picture};
 
 /// The words of a page. All of them are escaped on it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -33,6 +33,6 @@ pub fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText) -> Str
 pub fn pictures(matrix: &Matrix, stories: Option<&Stories>, paper: Paper) -> Vec<Picture> {
     let figures = stories.map_or_else(Vec::new, |story| story::figures(story, paper));
     let mut pictures = vec![picture::picture(matrix)];
-    pictures.extend(crepitus_plot::pictures(&figures));
+    pictures.extend(crepitus_pages::plot::pictures(&figures));
     pictures
 }

@@ -11,8 +11,8 @@ mod restick_rules;
 mod three_solvers;
 mod turn_back;
 
-use crepitus_plot::palette::{CURVES, Ink, LEVEL, TEXT};
-use crepitus_plot::{
+use crepitus_pages::plot::palette::{CURVES, Ink, LEVEL, TEXT};
+use crepitus_pages::plot::{
     Anchor, Axis, Chart, Figure, Key, Mark, Marker, Panel, Paper, Plot, Point, Sign, Stroke, Svg,
     extent, stack,
 };

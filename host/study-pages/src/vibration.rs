@@ -2,8 +2,8 @@
 
 use crate::story::{PanelData, Scale, Series, Story, figure};
 use crate::{Picture, StudyText};
-use crepitus_plot::page::{self, scrolling};
-use crepitus_plot::{Figure, Mark, Paper, pictures as of_figures};
+use crepitus_pages::plot::page::{self, scrolling};
+use crepitus_pages::plot::{Figure, Mark, Paper, pictures as of_figures};
 use crepitus_study::vibration::{AtSpeed, VibrationStudy, tables};
 use maud::html;
 

@@ -5,7 +5,7 @@
 // Small whole numbers.
 #![allow(clippy::cast_precision_loss)]
 
-#[path = "../../plot/tests/support/markup.rs"]
+#[path = "../../pages/tests/pages/markup.rs"]
 mod markup;
 #[path = "fixture/study.rs"]
 mod study;

@@ -3,7 +3,7 @@
 //!
 //! The pages are left in the target's `tmp` directory to be looked at.
 
-#[path = "../../plot/tests/support/markup.rs"]
+#[path = "../../pages/tests/pages/markup.rs"]
 mod markup;
 
 use std::path::Path;

@@ -3,7 +3,7 @@
 //!
 //! The pages are left in the target's `tmp` directory to be looked at.
 
-#[path = "../../plot/tests/support/markup.rs"]
+#[path = "../../pages/tests/pages/markup.rs"]
 mod markup;
 #[path = "fixture/matrix.rs"]
 mod matrix;
@@ -229,7 +229,7 @@ fn every_story_has_its_own_name_and_says_what_one_sees() {
         ["as a share of the 0.2 mJ", "bound", "torque 2 ticks late"],
     ]) {
         assert!(figure.caption.len() > 100);
-        let svg = &crepitus_plot::pictures([figure])[0].svg;
+        let svg = &crepitus_pages::plot::pictures([figure])[0].svg;
         for words in words {
             let is_there = svg.contains(words)
                 || figure.caption.contains(words)

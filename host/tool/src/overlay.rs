@@ -4,8 +4,8 @@ use crate::cli::key_and_value;
 use crate::failure::{Failure, warn};
 use clap::Args;
 use crepitus_files::table::list;
+use crepitus_pages::report::{Difference, Measured, Quantity};
 use crepitus_plant::recording::{self, AngleUnit, Angles, RecordingError, Samples, Source};
-use crepitus_report::{Difference, Measured, Quantity};
 use crepitus_scene::trace::Column;
 use std::path::{Path, PathBuf};
 

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, warn};
 use crate::results::Files;
 use clap::Args;
-use crepitus_plot::{Column, Paper, PdfError, Picture};
+use crepitus_pages::plot::{Column, Paper, PdfError, Picture};
 use std::ffi::OsString;
 use std::str::FromStr;
 
@@ -107,7 +107,7 @@ fn warn_of_width(picture: &Picture, column: Column) {
             "{} is {mm:.0} mm wide: at {} mm its letters would be smaller than {} pt",
             picture.name,
             column.mm(),
-            crepitus_plot::paper::SMALLEST_PT
+            crepitus_pages::plot::paper::SMALLEST_PT
         ));
     }
 }

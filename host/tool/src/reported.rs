@@ -3,8 +3,8 @@
 use crate::overlay;
 use crate::wav;
 use crepitus_files::json_path;
-use crepitus_report::Difference;
-use crepitus_sound::SoundSummary;
+use crepitus_pages::report::Difference;
+use crepitus_pages::sound::SoundSummary;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::Path;

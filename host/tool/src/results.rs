@@ -4,7 +4,7 @@ use crate::failure::{Failure, warn};
 use crate::recorded::beside;
 use crepitus_files::input;
 use crepitus_files::output::{Claim, Folder, OwnedFolder};
-use crepitus_plot::{Figure, pictures};
+use crepitus_pages::plot::{Figure, pictures};
 use crepitus_scene::Scene;
 use serde::Serialize;
 use serde_json::Value;

@@ -2,7 +2,7 @@
 //! torque levels that are marked.
 
 use crepitus_model::{Restart, Settings};
-use crepitus_report::{Section, TorqueLevels};
+use crepitus_pages::report::{Section, TorqueLevels};
 use crepitus_scene::run::TorqueSummary;
 
 /// The torque levels that a report marks.

@@ -6,8 +6,8 @@ use crate::output::to_stderr;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use crepitus_files::output::{Inputs, NewFile, is_stdout};
+use crepitus_pages::sound::{Sound, SoundError, SoundSummary};
 use crepitus_scene::trace::Column;
-use crepitus_sound::{Sound, SoundError, SoundSummary};
 use std::path::{Path, PathBuf};
 
 /// Whether a sound is wanted, and of what.

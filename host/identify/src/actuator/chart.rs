@@ -1,10 +1,10 @@
 //! Figure of the measured and the fitted impedance, with the residual.
 
 use crate::actuator::Actuator;
+use crepitus_pages::plot::number::rounded;
+use crepitus_pages::plot::palette::{OBJECT, SHAFT};
+use crepitus_pages::plot::{Axis, Chart, Figure, Key, Panel, Point, Sign, stack};
 use crepitus_plant::spectrum::Complex;
-use crepitus_plot::number::rounded;
-use crepitus_plot::palette::{OBJECT, SHAFT};
-use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Point, Sign, stack};
 use std::f64::consts::TAU;
 
 /// Width and heights, CSS pixels.

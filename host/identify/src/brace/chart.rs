@@ -2,8 +2,8 @@
 
 use crate::brace::Brace;
 use crate::brace::problem::{RESIDUAL_S, STRIDE};
-use crepitus_plot::palette::{OBJECT, SHAFT};
-use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Point, Sign, stack};
+use crepitus_pages::plot::palette::{OBJECT, SHAFT};
+use crepitus_pages::plot::{Axis, Chart, Figure, Key, Panel, Point, Sign, stack};
 
 /// Width and heights, CSS pixels.
 const WIDTH: f64 = 960.0;

@@ -1,7 +1,7 @@
 //! HTML page of the result, in one file.
 
 use crate::brace::{Brace, QuantityResult, chart};
-use crepitus_plot::page::{document, figure, footer, notes};
+use crepitus_pages::plot::page::{document, figure, footer, notes};
 use maud::html;
 
 /// Style sheet: tables are aligned to the left.

@@ -12,7 +12,7 @@ use crate::lesson::finding::Finding;
 use crate::lesson::lesson::Answer;
 use crate::lesson::session::Session;
 use crate::lesson::summary::{Confusion, Scores, Summary};
-use crepitus_plot::page;
+use crepitus_pages::plot::page;
 use maud::{Markup, html};
 use words::Words;
 

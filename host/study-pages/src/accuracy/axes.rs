@@ -6,7 +6,7 @@ use crepitus_study::accuracy::Point;
 
 use super::curve::FLOOR;
 use super::measure::Measure;
-use crepitus_plot::{Plot, extent};
+use crepitus_pages::plot::{Plot, extent};
 
 /// Errors above this are not compared.
 const HIGHEST: f64 = 1e100;

@@ -8,8 +8,8 @@ use super::curve::{Curve, FLOOR};
 use super::measure::Measure;
 use super::pair::{Pair, Study, is_device_tick};
 use super::{names, steps};
-use crepitus_plot::number::{duration, rounded, scientific};
-use crepitus_plot::{Axis, CurveStyle, Drawing, Key, Panel, Paper, Plot, Sign, Svg, stack};
+use crepitus_pages::plot::number::{duration, rounded, scientific};
+use crepitus_pages::plot::{Axis, CurveStyle, Drawing, Key, Panel, Paper, Plot, Sign, Svg, stack};
 
 /// CSS pixels.
 const WIDTH: f64 = 560.0;

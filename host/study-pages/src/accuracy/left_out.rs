@@ -6,9 +6,9 @@ use maud::{Markup, html};
 use super::curve::{Unfit, unfit};
 use super::measure::Measure;
 use super::pair::{Pair, Study};
-use crepitus_plot::number::{count, duration};
-use crepitus_plot::page::scrolling;
-use crepitus_table::Table;
+use crepitus_pages::plot::number::{count, duration};
+use crepitus_pages::plot::page::scrolling;
+use crepitus_pages::table::Table;
 
 /// The points of one rung at one precision that are missing for one reason.
 #[derive(Debug)]

@@ -4,9 +4,9 @@
 use super::axes::Axes;
 use super::curve::Curve;
 use super::measure::Measure;
-use crepitus_plot::labels::{LINE, spread};
-use crepitus_plot::palette::{Ink, LEVEL, TEXT};
-use crepitus_plot::{Anchor, CurveStyle, Frame, Plot};
+use crepitus_pages::plot::labels::{LINE, spread};
+use crepitus_pages::plot::palette::{Ink, LEVEL, TEXT};
+use crepitus_pages::plot::{Anchor, CurveStyle, Frame, Plot};
 
 /// Room for the sign before the name of a curve, CSS pixels.
 const SIGN: f64 = 11.0;

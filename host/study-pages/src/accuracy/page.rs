@@ -9,7 +9,7 @@ use super::measure::Measure;
 use super::pair::{Pair, Study};
 use super::{left_out, studied_tables, target, tick_table};
 use crate::{Paper, StudyText};
-use crepitus_plot::{Chart, Figure, page};
+use crepitus_pages::plot::{Chart, Figure, page};
 
 const LAYOUT: &str = include_str!("page.css");
 

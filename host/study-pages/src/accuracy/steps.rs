@@ -7,9 +7,9 @@ use super::axes::Axes;
 use super::curve::Curve;
 use super::measure::Measure;
 use super::pair::is_device_tick;
-use crepitus_plot::number::duration;
-use crepitus_plot::palette::TEXT;
-use crepitus_plot::{Anchor, Frame, Plot};
+use crepitus_pages::plot::number::duration;
+use crepitus_pages::plot::palette::TEXT;
+use crepitus_pages::plot::{Anchor, Frame, Plot};
 
 /// Distance from a point to the middle of its label, CSS pixels.
 const AWAY: f64 = 12.0;

@@ -1,8 +1,8 @@
 //! Results besides those of the rungs: the other symptoms, the stage of the vibration
 //! actuator, and what all of it costs on the device's core.
 
-use crepitus_plot::number::rounded;
-use crepitus_plot::page::scrolling;
+use crepitus_pages::plot::number::rounded;
+use crepitus_pages::plot::page::scrolling;
 use crepitus_study::accuracy::actuator::{ActuatorPoint, actuator_table};
 use crepitus_study::accuracy::symptoms::SymptomPoint;
 use crepitus_study::accuracy::symptoms::table::{steps_table, symptoms_table};

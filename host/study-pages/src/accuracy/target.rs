@@ -9,10 +9,10 @@ use super::curve::{FLOOR, unfit};
 use super::diagram::{Diagram, file_name};
 use super::measure::Measure;
 use super::pair::{Pair, Study, is_device_tick};
-use crepitus_plot::labels::{LINE, spread};
-use crepitus_plot::number::{fixed, rounded, scientific};
-use crepitus_plot::palette::TEXT;
-use crepitus_plot::{
+use crepitus_pages::plot::labels::{LINE, spread};
+use crepitus_pages::plot::number::{fixed, rounded, scientific};
+use crepitus_pages::plot::palette::TEXT;
+use crepitus_pages::plot::{
     Anchor, Axis, Chart, CurveStyle, Drawing, Figure, Frame, Key, Panel, Paper, Plot, Sign, extent,
     stack,
 };

@@ -1,14 +1,14 @@
 //! Cost and error of every rung at the device's tick, 50 µs.
 
-use crepitus_plot::page::scrolling;
+use crepitus_pages::plot::page::scrolling;
 use crepitus_study::accuracy::Point;
 use maud::{Markup, html};
 
 use super::left_out::found;
 use super::measure::Measure;
 use super::pair::{Pair, Study, is_device_tick};
-use crepitus_plot::CurveStyle;
-use crepitus_plot::number::{fixed, rounded, scientific};
+use crepitus_pages::plot::CurveStyle;
+use crepitus_pages::plot::number::{fixed, rounded, scientific};
 
 /// A rung at one precision.
 #[derive(Debug)]

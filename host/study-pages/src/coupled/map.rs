@@ -1,8 +1,8 @@
 //! The map: of each gear and lag a panel, stiffness up, damping of the cuff to
 //! the right.
 
-use crepitus_plot::palette::{AXIS, Ink, LEVEL, TEXT};
-use crepitus_plot::{Drawing, Svg};
+use crepitus_pages::plot::palette::{AXIS, Ink, LEVEL, TEXT};
+use crepitus_pages::plot::{Drawing, Svg};
 use crepitus_scene::preset::joints;
 use crepitus_study::coupled::{
     Cell, CoupledStudy, DAMPINGS, GEARS, LAGS, Onset, STIFFNESSES, Verdict,

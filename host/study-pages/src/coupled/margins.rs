@@ -1,8 +1,8 @@
 //! Stiffness margins: how much stiffer a joint may be before its shaft rings.
 
-use crepitus_plot::page::scrolling;
+use crepitus_pages::plot::page::scrolling;
+use crepitus_pages::table::Table;
 use crepitus_study::coupled::{Margin, Verdict};
-use crepitus_table::Table;
 use maud::{Markup, html};
 
 pub(super) fn table(

@@ -2,7 +2,7 @@
 
 use super::{map, margins};
 use crate::StudyText;
-use crepitus_plot::page::{self, scrolling};
+use crepitus_pages::plot::page::{self, scrolling};
 use crepitus_study::coupled::CoupledStudy;
 use maud::html;
 

@@ -6,9 +6,9 @@ use crepitus_study::effects::variant::Change;
 use crepitus_study::effects::{EffectsStudy, Row};
 
 use super::look;
-use crepitus_plot::number::rounded;
-use crepitus_plot::palette::{AXIS, LEVEL, TEXT};
-use crepitus_plot::{Anchor, Axis, Chart, Drawing, Figure, Stroke, extent};
+use crepitus_pages::plot::number::rounded;
+use crepitus_pages::plot::palette::{AXIS, LEVEL, TEXT};
+use crepitus_pages::plot::{Anchor, Axis, Chart, Drawing, Figure, Stroke, extent};
 
 /// CSS pixels.
 const WIDTH: f64 = 950.0;

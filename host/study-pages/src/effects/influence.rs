@@ -7,9 +7,9 @@ use crepitus_study::effects::{EffectsStudy, Row};
 
 use super::{look, spots};
 use crate::accuracy::measure::Measure;
-use crepitus_plot::number::rounded;
-use crepitus_plot::palette::TEXT;
-use crepitus_plot::{Anchor, Axis, Chart, Figure, Panel, Paper, Plot, extent, stack};
+use crepitus_pages::plot::number::rounded;
+use crepitus_pages::plot::palette::TEXT;
+use crepitus_pages::plot::{Anchor, Axis, Chart, Figure, Panel, Paper, Plot, extent, stack};
 
 /// CSS pixels.
 const WIDTH: f64 = 960.0;

@@ -3,8 +3,8 @@
 use crepitus_study::effects::Row;
 use crepitus_study::effects::variant::Change;
 
-use crepitus_plot::palette::{CURVES, TEXT};
-use crepitus_plot::{CurveStyle, Key, Marker, Sign};
+use crepitus_pages::plot::palette::{CURVES, TEXT};
+use crepitus_pages::plot::{CurveStyle, Key, Marker, Sign};
 
 /// Look of a variant, by what was done to the scene.
 pub(super) fn of(change: Change) -> CurveStyle {

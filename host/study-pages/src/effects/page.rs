@@ -5,7 +5,7 @@ use maud::html;
 
 use super::{figures, smallest, table};
 use crate::StudyText;
-use crepitus_plot::page;
+use crepitus_pages::plot::page;
 
 /// The page looks like that of the accuracy study, with a wider table.
 const LAYOUT: &str = concat!(

@@ -7,7 +7,7 @@ use crepitus_study::limits::Limited;
 use maud::{Markup, html};
 
 use super::table::{percent, torque};
-use crepitus_plot::number::{count, rounded};
+use crepitus_pages::plot::number::{count, rounded};
 
 pub(super) fn section(answer: &Answer) -> Markup {
     let chosen = &answer.chosen;

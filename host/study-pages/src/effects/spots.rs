@@ -1,7 +1,7 @@
 //! Names beside the signs of a diagram, each on the side where it covers the
 //! least.
 
-use crepitus_plot::{Drawing, Frame};
+use crepitus_pages::plot::{Drawing, Frame};
 
 /// Height of a line, CSS pixels.
 const HEIGHT: f64 = 15.0;

@@ -1,6 +1,6 @@
 //! The table: a row a variant.
 
-use crepitus_plot::page::scrolling;
+use crepitus_pages::plot::page::scrolling;
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_scene::run::AddedTime;
 use crepitus_study::effects::influence::BANDS_HZ;
@@ -9,7 +9,7 @@ use crepitus_study::effects::{EffectsStudy, Row};
 use maud::{Markup, html};
 
 use super::look;
-use crepitus_plot::number::{count, fixed, rounded};
+use crepitus_pages::plot::number::{count, fixed, rounded};
 
 pub(super) fn table(study: &EffectsStudy) -> Markup {
     html! {

@@ -1,7 +1,7 @@
 //! Every case in words: why it is hard, exactly what goes in, what must hold,
 //! where it comes from, and all verdicts.
 
-use crepitus_plot::page::scrolling;
+use crepitus_pages::plot::page::scrolling;
 use crepitus_study::stability::{Cell, Matrix, Row, Verdict};
 use maud::{Markup, html};
 

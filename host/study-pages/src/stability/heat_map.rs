@@ -1,7 +1,7 @@
 //! The matrix as a table: a pair of lines a case (f32 above f64), a column a
 //! rung, a colour and a number a cell.
 
-use crepitus_plot::page::scrolling;
+use crepitus_pages::plot::page::scrolling;
 use crepitus_study::stability::{Matrix, Row};
 use maud::{Markup, html};
 

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use super::{details, heat_map, look, scale};
 use crate::{StudyText, story};
-use crepitus_plot::page;
+use crepitus_pages::plot::page;
 
 const LAYOUT: &str = include_str!("page.css");
 

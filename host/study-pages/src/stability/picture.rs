@@ -1,8 +1,8 @@
 //! The matrix in brief as one SVG, for a document: the rungs that matter in
 //! the precision of the device, legible at the width of a page of text.
 
-use crepitus_plot::palette::{AXIS, LEVEL, TEXT};
-use crepitus_plot::{Drawing, Picture};
+use crepitus_pages::plot::palette::{AXIS, LEVEL, TEXT};
+use crepitus_pages::plot::{Drawing, Picture};
 use crepitus_study::stability::{Matrix, Row};
 use maud::{Markup, html};
 

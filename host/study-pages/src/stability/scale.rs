@@ -4,8 +4,8 @@
 
 use std::fmt::Write as _;
 
-use crepitus_plot::number::power;
-use crepitus_plot::palette::{Ink, PAPER, TEXT};
+use crepitus_pages::plot::number::power;
+use crepitus_pages::plot::palette::{Ink, PAPER, TEXT};
 
 /// A colour of a cell: its ground, whose name is a class of the style sheet,
 /// and what is written on it.

@@ -1,7 +1,7 @@
 //! One joint under three solvers.
 
 use super::{PanelData, Scale, Series, Story, mark};
-use crepitus_plot::number::rounded;
+use crepitus_pages::plot::number::rounded;
 use crepitus_study::stability::story::ThreeSolvers;
 
 const NAMES: [&str; 3] = [

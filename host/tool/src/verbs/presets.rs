@@ -4,8 +4,8 @@ use crate::failure::{Failure, print, print_json};
 use crate::own_presets;
 use clap::Args;
 use crepitus_client::values::show_number;
+use crepitus_pages::table::Table;
 use crepitus_scene::preset::{self, Disorder, Evidence, Level, Preset, Setting};
-use crepitus_table::Table;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 

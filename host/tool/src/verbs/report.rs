@@ -15,12 +15,12 @@ use crate::sections::{counts, torque_levels};
 use crate::wav::Wav;
 use clap::Args;
 use crepitus_files::output::{Folder, Inputs};
+use crepitus_pages::report::{Collector, Mark, Setup, Text, TorqueLevels};
 use crepitus_protocol::TICK_S;
 use crepitus_recording::{
     Analysis, ArmingPushes, Books, Damage, History, Recording, RecordingSummary, ReportColumns,
     Row, Step, seconds,
 };
-use crepitus_report::{Collector, Mark, Setup, Text, TorqueLevels};
 use std::path::{Path, PathBuf};
 
 /// Rows between two updates of the progress.
@@ -194,10 +194,10 @@ pub(super) fn write_into(
         footer: footer(),
     };
     let figures = collector.finish();
-    let page = crepitus_report::html(&text, &figures);
+    let page = crepitus_pages::report::html(&text, &figures);
     let pictures = extras
         .pictures
-        .files(|paper| crepitus_report::pictures(&figures, paper))?;
+        .files(|paper| crepitus_pages::report::pictures(&figures, paper))?;
     let files = report_files(page, &summary, pictures)?;
     results::write(folder, out, files)?;
     let sound = listener

@@ -16,7 +16,7 @@ use crate::sections::torque_levels;
 use crate::wav::Wav;
 use clap::Args;
 use crepitus_files::output::{Claim, Folder};
-use crepitus_report::{Setup, Text};
+use crepitus_pages::report::{Setup, Text};
 use crepitus_scene::shipped::Source;
 use crepitus_scene::{Overrides, RunError, Scene, Summary, run as runner};
 use std::path::{Path, PathBuf};
@@ -248,10 +248,10 @@ fn simulate(
         sections: tables::sections(&summary, &specs),
         footer: footer(),
     };
-    let page = crepitus_report::html(&text, &figures);
+    let page = crepitus_pages::report::html(&text, &figures);
     let pictures = arguments
         .pictures
-        .files(|paper| crepitus_report::pictures(&figures, paper))?;
+        .files(|paper| crepitus_pages::report::pictures(&figures, paper))?;
     let files = report_files(page, &summary, pictures)?;
     let out = write(scene, folder, (wanted, out), files, arguments)?;
     let sound = listener

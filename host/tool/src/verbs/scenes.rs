@@ -2,10 +2,10 @@
 
 use crate::failure::{Failure, print, print_json};
 use clap::Args;
+use crepitus_pages::table::{Cell, Table};
 use crepitus_scene::shipped::{SHIPPED, Shipped};
 use crepitus_scene::similar::{self, question};
 use crepitus_scene::{Overrides, SceneError};
-use crepitus_table::{Cell, Table};
 use std::path::Path;
 
 /// List the scenes that ship, with what each shows.

@@ -22,11 +22,11 @@ use crepitus_model::solver::locate::{ExactEvents, Locate};
 use crepitus_model::{
     Frozen, Real, Settings, SettingsError, ShaftStep, StepCoefficients, StickSlip,
 };
+use crepitus_pages::table::Table;
+use crepitus_pages::table::show::{fixed, microseconds, scientific};
 use crepitus_plant::spectrum::cross::Cross;
 use crepitus_scene::cpu_time;
 use crepitus_scene::scene::Precision;
-use crepitus_table::Table;
-use crepitus_table::show::{fixed, microseconds, scientific};
 use serde::Serialize;
 use std::hint::black_box;
 

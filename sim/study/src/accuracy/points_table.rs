@@ -2,7 +2,7 @@
 //! not known is `nan`.
 
 use crate::accuracy::point::Point;
-use crepitus_table::Table;
+use crepitus_pages::table::Table;
 
 /// A row a point, a column a field of [`Point`].
 pub fn points_table(points: &[Point]) -> Table<'_, Point> {

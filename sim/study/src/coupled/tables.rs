@@ -4,8 +4,8 @@
 use super::cell::Cell;
 use super::setting::Setting;
 use super::study::{Margin, Onset};
-use crepitus_table::show::fixed;
-use crepitus_table::{Cell as TableCell, Table};
+use crepitus_pages::table::show::fixed;
+use crepitus_pages::table::{Cell as TableCell, Table};
 
 /// `cells.csv`: one row a cell of the map.
 pub fn cells(cells: &[Cell]) -> Table<'_, Cell> {

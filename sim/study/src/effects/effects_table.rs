@@ -4,9 +4,9 @@
 //! smallest difference that the timings can tell: it is never zero or less.
 
 use super::results::{Added, Ran, Row};
+use crepitus_pages::table::show::{UNKNOWN, fixed, milli, signed};
+use crepitus_pages::table::{Cell, Table};
 use crepitus_scene::run::AddedTime;
-use crepitus_table::show::{UNKNOWN, fixed, milli, signed};
-use crepitus_table::{Cell, Table};
 use serde::{Serialize, Serializer};
 
 /// A row a variant.

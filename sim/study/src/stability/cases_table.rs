@@ -5,7 +5,7 @@ use super::case::Case;
 use super::matrix::Cell;
 use super::verdict::{Failure, Margin, Verdict};
 use crepitus_model::Real;
-use crepitus_table::Table;
+use crepitus_pages::table::Table;
 
 /// A row a cell. `measured` and `limit` are in `unit`; of other events than
 /// the true ones they are the counts.

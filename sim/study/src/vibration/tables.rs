@@ -2,8 +2,8 @@
 
 use super::loop_gain::Margin;
 use super::{Coil, Measured, Row};
-use crepitus_table::Table;
-use crepitus_table::show::{fixed, scaled};
+use crepitus_pages::table::Table;
+use crepitus_pages::table::show::{fixed, scaled};
 
 /// The steps of the chain.
 pub fn steps(rows: &[Row]) -> Table<'_, Row> {

@@ -4,11 +4,11 @@ use super::table::{Row, nearest_to_the_tick, rows, scenes, worst_floor};
 use super::words::plain;
 use crepitus_model::Convention;
 use crepitus_model::solver::Solver;
+use crepitus_pages::table::Table;
+use crepitus_pages::table::show::{UNKNOWN, fixed, microseconds, milli, scientific};
 use crepitus_scene::scene::Precision;
 use crepitus_study::accuracy::Study;
 use crepitus_study::accuracy::target::{self, OnTarget, recorded};
-use crepitus_table::Table;
-use crepitus_table::show::{UNKNOWN, fixed, microseconds, milli, scientific};
 use std::borrow::Cow;
 
 /// The cheapest solver and the exact one, on the host and on the controller, and what holding the torque costs whoever

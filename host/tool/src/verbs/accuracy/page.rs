@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::pictures::Pictures;
 use crate::results::{Files, footer, report_files};
 use crepitus_model::Convention;
+use crepitus_pages::table::show::microseconds;
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::accuracy::orders::{Order, Orders};
 use crepitus_study::accuracy::points_table::points_table;
@@ -13,7 +14,6 @@ use crepitus_study::accuracy::symptoms::table::symptoms_table;
 use crepitus_study::accuracy::target::table::target_table;
 use crepitus_study::accuracy::{Point, Study};
 use crepitus_study_pages::{Section, StudyText, accuracy};
-use crepitus_table::show::microseconds;
 
 /// The files of a study; each diagram as an SVG of its own if asked for.
 pub(super) fn files(

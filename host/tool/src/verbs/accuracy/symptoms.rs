@@ -1,11 +1,11 @@
 //! The symptoms besides crepitus, as a table for the terminal and for a page of the
 //! book.
 
+use crepitus_pages::table::show::microseconds;
 use crepitus_scene::scene::Precision;
 use crepitus_study::accuracy::symptoms::SymptomPoint;
 use crepitus_study::accuracy::symptoms::table::precisions_table;
 use crepitus_study::accuracy::target::inputs::TICK_S;
-use crepitus_table::show::microseconds;
 
 /// Table of the symptoms at the device's tick, or the studied step that is nearest to it.
 pub(super) fn table(points: &[SymptomPoint]) -> String {

@@ -1,8 +1,8 @@
 //! The study at the device's tick, as a table for the terminal.
 
+use crepitus_pages::table::Table;
+use crepitus_pages::table::show::{fixed, microseconds, scientific};
 use crepitus_study::accuracy::{Point, Study};
-use crepitus_table::Table;
-use crepitus_table::show::{fixed, microseconds, scientific};
 use std::fmt::Write;
 
 /// The device's tick, s.

@@ -1,6 +1,6 @@
 //! Numbers as a person reads them.
 
-use crepitus_table::show::scientific;
+use crepitus_pages::table::show::scientific;
 
 /// An error with its unit.
 pub(super) fn with_unit(x: f64, unit: &str) -> String {

@@ -3,9 +3,11 @@
 use super::finding::{Finding, Verdict};
 use super::results::Change;
 use crepitus_client::values::{full_name, show_value};
-use crepitus_plot::page::{Section, document, figure as drawn, footer, notes, tables, warnings};
-use crepitus_plot::palette::{OBJECT, SHAFT};
-use crepitus_plot::{Axis, Chart, Figure, Key, Panel, Point, Sign, stack};
+use crepitus_pages::plot::page::{
+    Section, document, figure as drawn, footer, notes, tables, warnings,
+};
+use crepitus_pages::plot::palette::{OBJECT, SHAFT};
+use crepitus_pages::plot::{Axis, Chart, Figure, Key, Panel, Point, Sign, stack};
 use maud::html;
 
 /// Size of the chart, CSS pixels.

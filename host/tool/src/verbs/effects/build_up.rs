@@ -1,8 +1,8 @@
 //! One effect after the other as a table for the terminal.
 
+use crepitus_pages::table::Table;
+use crepitus_pages::table::show::{UNKNOWN, fixed, scaled};
 use crepitus_study::effects::build_up::{Measured, Rung};
-use crepitus_table::Table;
-use crepitus_table::show::{UNKNOWN, fixed, scaled};
 
 /// A line a set of effects; nothing if there is none.
 pub(super) fn table(rungs: &[Rung]) -> String {

@@ -2,9 +2,9 @@
 
 use crate::screen::All;
 use crepitus_model::parameters::{Choice, ParameterSpec};
+use crepitus_pages::table::{Cell, Table};
 use crepitus_plant::effect::{Effect, Need};
 use crepitus_plant::effects::EFFECTS;
-use crepitus_table::{Cell, Table};
 use serde_json::{Value, json};
 use std::fmt::Write;
 

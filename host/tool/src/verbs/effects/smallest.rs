@@ -1,11 +1,11 @@
 //! The smallest set of effects within a tolerance, in sentences.
 
 use super::table::torque;
+use crepitus_pages::table::Table;
 use crepitus_study::effects::Answer;
 use crepitus_study::effects::answer::{Dropped, Subset};
 use crepitus_study::effects::influence::Difference;
 use crepitus_study::limits::Limited;
-use crepitus_table::Table;
 use std::fmt::Write;
 
 /// The smallest set, what was dropped, and why the rest is kept.

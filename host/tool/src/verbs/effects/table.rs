@@ -1,11 +1,11 @@
 //! The study as a table for the terminal.
 
+use crepitus_pages::table::Table;
+use crepitus_pages::table::show::{UNKNOWN, milli, scaled, signed};
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_study::effects::effects_table::{cost, effects_table};
 use crepitus_study::effects::variant::Change;
 use crepitus_study::effects::{EffectsStudy, Row};
-use crepitus_table::Table;
-use crepitus_table::show::{UNKNOWN, milli, scaled, signed};
 
 /// Effects that the scene does not have and that are listed all the same: those that would be felt most.
 const OTHERS: usize = 3;

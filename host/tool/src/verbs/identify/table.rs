@@ -2,7 +2,7 @@
 
 use crate::sections::counts;
 use crepitus_identify::brace::{Brace, QuantityResult, Shown, Weight};
-use crepitus_table::Table;
+use crepitus_pages::table::Table;
 use serde_json::{Value, json};
 use std::fmt::Write;
 

@@ -4,8 +4,8 @@ use crate::failure::Failure;
 use crepitus_identify::Estimate;
 use crepitus_identify::actuator::Actuator;
 use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
+use crepitus_pages::table::Table;
 use crepitus_protocol::parameters::find;
-use crepitus_table::Table;
 use serde_json::{Value, json};
 
 /// One parameter.

@@ -8,10 +8,10 @@ use crate::line::{connect, failure};
 use clap::builder::PossibleValuesParser;
 use crepitus_client::connection::parameters::named;
 use crepitus_client::values::{full_name, show_value};
+use crepitus_pages::table::Table;
 use crepitus_protocol::Values;
 use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter};
 use crepitus_scene::values::{RENDER, is_of_knee};
-use crepitus_table::Table;
 use serde_json::{Value, json};
 use std::path::Path;
 

@@ -1,9 +1,9 @@
 //! The tables of a recording's report.
 
 use crate::sections::{counts, section, torque_section};
-use crepitus_plot::number::{count, rounded};
+use crepitus_pages::plot::number::{count, rounded};
+use crepitus_pages::report::Section;
 use crepitus_recording::{Books, Controller, ParameterSet, RecordingSummary, seconds};
-use crepitus_report::Section;
 use serde_json::Value;
 
 /// Gaps that are shown.

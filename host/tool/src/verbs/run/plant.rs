@@ -2,7 +2,7 @@
 //! the rendered torque did.
 
 use crate::sections::{millijoule, nm, section};
-use crepitus_report::{Account, Balance, EnergyTerm, Section};
+use crepitus_pages::report::{Account, Balance, EnergyTerm, Section};
 use crepitus_scene::Summary;
 use std::borrow::Cow;
 

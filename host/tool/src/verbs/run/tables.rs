@@ -4,7 +4,7 @@
 use super::plant;
 use crate::sections::{counts, millijoule, nm, section, torque_section};
 use crepitus_model::parameters::ParameterSpec;
-use crepitus_report::Section;
+use crepitus_pages::report::Section;
 use crepitus_scene::Summary;
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_scene::run::{AddedTime, EffectSummary, TankSummary, TorqueLimitSummary};

@@ -6,7 +6,7 @@ use crate::interrupt;
 use crate::progress::Progress;
 use crate::wav::Listener;
 use crepitus_files::output::{Folder, Part};
-use crepitus_report::{Collector, Figures, Measured, Setup};
+use crepitus_pages::report::{Collector, Figures, Measured, Setup};
 use crepitus_scene::Observer;
 use crepitus_scene::output::{EventsCsv, TraceCsv};
 use crepitus_scene::trace::{Column, EventRecord, SymptomEvent};

@@ -4,10 +4,10 @@ use super::summary::{Counts, Summary};
 use super::table::subject;
 use crepitus_model::Convention;
 use crepitus_model::solver::Solver;
+use crepitus_pages::table::Table;
+use crepitus_pages::table::show::UNKNOWN;
 use crepitus_scene::scene::Precision;
 use crepitus_study::stability::{Cell, Failure, Matrix, Rung, Subject, Verdict};
-use crepitus_table::Table;
-use crepitus_table::show::UNKNOWN;
 
 /// The device's solver, what the simplest one does instead, and what the one does that is always stable; then what must hold.
 pub(super) fn answer(matrix: &Matrix, summary: &Summary<'_>) -> String {

@@ -1,8 +1,8 @@
 //! The matrix on a terminal: a line a case, and what must hold and does not.
 
 use super::summary::{CaseSummary, Summary};
+use crepitus_pages::table::Table;
 use crepitus_study::stability::{Matrix, Subject};
-use crepitus_table::Table;
 use std::fmt::Write;
 
 /// `exact-events, frozen, f32`.

@@ -2,8 +2,8 @@
 //! is not known is `nan`.
 
 use super::SymptomPoint;
-use crepitus_table::show::{fixed, microseconds, scientific};
-use crepitus_table::{Cell, Table};
+use crepitus_pages::table::show::{fixed, microseconds, scientific};
+use crepitus_pages::table::{Cell, Table};
 
 /// A row a point: for `symptoms.csv` a column a field of [`SymptomPoint`], for people
 /// those of one step.

@@ -1,8 +1,8 @@
 //! Costs of every rung, and of what else the device does, on its core.
 
 use super::Row;
-use crepitus_table::show::{fixed, scaled, scientific};
-use crepitus_table::{Cell, Table};
+use crepitus_pages::table::show::{fixed, scaled, scientific};
+use crepitus_pages::table::{Cell, Table};
 
 /// Table for people, and `cycles.csv`: a row a subject.
 pub fn target_table(rows: &[Row]) -> Table<'_, Row> {

@@ -1,0 +1,14 @@
+//! What people see and hear of a run.
+//!
+//! | to find | look in |
+//! |---|---|
+//! | one definition of a table as CSV, JSON, terminal text, Markdown and HTML | [`table`] |
+//! | charts as SVG and PDF, and the frame of a page | [`plot`] |
+//! | the report of a run or a recording | [`report`] |
+//! | a torque as sound | [`sound`] |
+#![forbid(unsafe_code)]
+
+pub mod plot;
+pub mod report;
+pub mod sound;
+pub mod table;
