@@ -27,8 +27,8 @@ for picture in frequency-f64 frequency-f32 tick-torque-f32; do
     echo "$image"
 done
 
-cp target/figures/accuracy/cycles.csv sim/study/src/accuracy/target/cycles.csv
-echo sim/study/src/accuracy/target/cycles.csv
+cp target/figures/accuracy/cycles.csv host/studies/src/accuracy/target/cycles.csv
+echo host/studies/src/accuracy/target/cycles.csv
 for convention in frozen physical; do
     cp "target/figures/accuracy/target-constant-0-988-$convention-f32.svg" "docs/images/accuracy-target-$convention.svg"
     echo "docs/images/accuracy-target-$convention.svg"

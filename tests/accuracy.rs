@@ -455,7 +455,7 @@ fn the_record_is_what_the_target_does() {
     if has_no_target(&output) {
         return;
     }
-    let record = support::repository().join("sim/study/src/accuracy/target/cycles.csv");
+    let record = support::repository().join("host/studies/src/accuracy/target/cycles.csv");
     let read = |file: &Path| fs::read_to_string(file).unwrap();
     assert_eq!(read(&out.join("cycles.csv")), read(&record));
 }

@@ -290,7 +290,7 @@ fn rows(folder: &Path, name: &str) -> Vec<HashMap<String, String>> {
 }
 
 /// In the long mode, `CREPITUS_LONG=1`: the whole map takes a minute. Single cells and what is predicted of
-/// them are tested in `sim/study`.
+/// them are tested in `host/studies`.
 #[test]
 fn the_map_of_stiffness_keeps_what_theory_promises() {
     let output = run(&["stability", "--coupled", "--case", "H05"]);

@@ -1,6 +1,6 @@
 //! Signal handling during long work, for Ctrl-C.
 
-use crepitus_study::{Cancelled, Watcher};
+use crepitus_studies::{Cancelled, Watcher};
 use pyo3::prelude::*;
 use std::time::{Duration, Instant};
 

@@ -5,11 +5,11 @@ use crate::scene::Scene;
 use crate::signals::Watch;
 use crepitus_pages::table::Table;
 use crepitus_scene::scene::Precision;
-use crepitus_study::accuracy::points_table::points_table;
-use crepitus_study::accuracy::study::{FULL_REPEATS, FULL_STEPS_S, QUICK_REPEATS, QUICK_STEPS_S};
-use crepitus_study::accuracy::{Plan, StudyScene, run, scenes::standard};
-use crepitus_study::effects::effects_table::effects_table;
-use crepitus_study::effects::{EffectsError, Plan as EffectsPlan, run as run_effects};
+use crepitus_studies::accuracy::points_table::points_table;
+use crepitus_studies::accuracy::study::{FULL_REPEATS, FULL_STEPS_S, QUICK_REPEATS, QUICK_STEPS_S};
+use crepitus_studies::accuracy::{Plan, StudyScene, run, scenes::standard};
+use crepitus_studies::effects::effects_table::effects_table;
+use crepitus_studies::effects::{EffectsError, Plan as EffectsPlan, run as run_effects};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

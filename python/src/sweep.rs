@@ -4,9 +4,9 @@ use crate::errors;
 use crate::scene::{Scene, forget};
 use crate::signals::Signals;
 use crate::values;
-use crepitus_sweep::axis::Values;
-use crepitus_sweep::parts::Kind;
-use crepitus_sweep::{
+use crepitus_studies::sweep::axis::Values;
+use crepitus_studies::sweep::parts::Kind;
+use crepitus_studies::sweep::{
     Axis, Cell, Design, Ended, Plan, Points, Receiver, Row, Sampled, Stop, run_all, totals,
 };
 use numpy::IntoPyArray;

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::progress::Progress;
 use crepitus_scene::cpu_time::CLOCK;
-use crepitus_study::{Cancelled, StudyError, Watcher};
+use crepitus_studies::{Cancelled, StudyError, Watcher};
 
 /// Moves the progress bar, and stops at Ctrl-C.
 pub(crate) struct Watch(Progress);

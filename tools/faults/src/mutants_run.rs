@@ -21,7 +21,7 @@ const TESTS: [(&str, &[&str]); 3] = [
             "-p crepitus-model",
             "-p crepitus-scene --lib --test symptom_agreement --test symptom_promises \
              --test symptom_scenes --test reference_cases --test runs",
-            "-p crepitus-study --lib",
+            "-p crepitus-studies --lib",
             "-p crepitus-device --lib",
         ],
     ),

@@ -11,7 +11,13 @@ use std::path::{Path, PathBuf};
 const LEFT_OUT: [&str; 4] = [".git", "target", "out", "bench"];
 
 /// Folders that the outcome of a fault depends on.
-const DECIDES: [&str; 5] = ["model", "sim/ladder", "sim/plant", "sim/scene", "sim/study"];
+const DECIDES: [&str; 5] = [
+    "model",
+    "sim/ladder",
+    "sim/plant",
+    "sim/scene",
+    "host/studies",
+];
 
 /// The same for faults of the firmware.
 const FIRMWARE_DECIDES: [&str; 8] = [

@@ -152,7 +152,13 @@ impl Workshop {
             tests: Vec::new(),
             all: Vec::new(),
         };
-        let example = ["build", "-p", "crepitus-study", "--example", "broken_cases"];
+        let example = [
+            "build",
+            "-p",
+            "crepitus-studies",
+            "--example",
+            "broken_cases",
+        ];
         let builder = Builder {
             scratch,
             tree: &workshop.tree,

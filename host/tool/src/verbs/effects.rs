@@ -18,7 +18,7 @@ use clap::Args;
 use crepitus_files::json_path;
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, Scene, SceneError};
-use crepitus_study::effects::{
+use crepitus_studies::effects::{
     EffectsError, Plan, Refusal, Tolerance, refusal, run as study_effects,
 };
 use serde_json::json;

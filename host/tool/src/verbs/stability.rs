@@ -18,8 +18,8 @@ use crate::screen::{All, screen};
 use crate::studying::{self, Watch};
 use clap::Args;
 use crepitus_files::json_path;
-use crepitus_study::stability::story::{self, Stories};
-use crepitus_study::stability::{Matrix, matrix};
+use crepitus_studies::stability::story::{self, Stories};
+use crepitus_studies::stability::{Matrix, matrix};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use summary::Summary;
@@ -182,7 +182,7 @@ fn judge(matrix: &Matrix) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_study::stability::{Cell, Failure as Broken, Row, Subject, Verdict, catalogue};
+    use crepitus_studies::stability::{Cell, Failure as Broken, Row, Subject, Verdict, catalogue};
 
     /// One case in which the first of two subjects overflows.
     fn overflow(must_hold: bool) -> Matrix {

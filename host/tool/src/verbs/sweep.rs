@@ -13,7 +13,7 @@ use clap::Args;
 use crepitus_files::json_path;
 use crepitus_scene::Overrides;
 use crepitus_scene::shipped::Source;
-use crepitus_sweep::{
+use crepitus_studies::sweep::{
     Axis, Design, Format, Opening, Plan, Points, Sampled, Shard, Store, StoreError, TableError,
     Written, run_all, totals, traced,
 };

@@ -13,8 +13,9 @@ use crepitus_files::json_path;
 use crepitus_scene::scene::MotionKind;
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, Scene};
-use crepitus_study::vibration::{Plan, VibrationError, VibrationStudy, run as study_vibration};
-use crepitus_study_pages::{StudyText, vibration as page};
+use crepitus_studies::StudyText;
+use crepitus_studies::vibration::report as page;
+use crepitus_studies::vibration::{Plan, VibrationError, VibrationStudy, run as study_vibration};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 

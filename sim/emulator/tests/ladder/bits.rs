@@ -6,9 +6,9 @@ use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters};
 use crepitus_plant::effects;
 use crepitus_scene::scene::Precision;
-use crepitus_study::accuracy::scenes::standard;
-use crepitus_study::accuracy::target::inputs::{Lengths, tasks};
-use crepitus_study::stability::{Criterion, catalogue, replay, subject};
+use crepitus_studies::accuracy::scenes::standard;
+use crepitus_studies::accuracy::target::inputs::{Lengths, tasks};
+use crepitus_studies::stability::{Criterion, catalogue, replay, subject};
 
 #[test]
 fn every_rung_and_every_effect_gives_the_bits_of_the_host() {

@@ -9,9 +9,9 @@ use crate::ladder;
 use crepitus_ladder::{Cost, Subject};
 use crepitus_model::Convention;
 use crepitus_model::render::effects;
-use crepitus_study::accuracy::scenes::standard;
-use crepitus_study::accuracy::target::LABEL;
-use crepitus_study::accuracy::target::inputs::{Lengths, tasks};
+use crepitus_studies::accuracy::scenes::standard;
+use crepitus_studies::accuracy::target::LABEL;
+use crepitus_studies::accuracy::target::inputs::{Lengths, tasks};
 
 /// Most cycles of a step on a motion, and on other inputs.
 struct Budget {

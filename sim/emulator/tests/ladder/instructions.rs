@@ -3,8 +3,8 @@
 use crate::{ladder, qemu};
 use crepitus_emulator::firmware::{Program, path};
 use crepitus_ladder::{Cost, Subject};
-use crepitus_study::accuracy::scenes::standard;
-use crepitus_study::accuracy::target::inputs::{Lengths, tasks};
+use crepitus_studies::accuracy::scenes::standard;
+use crepitus_studies::accuracy::target::inputs::{Lengths, tasks};
 
 /// Steps of each subject: enough for breaks, matches and reversals.
 const STEPS: usize = 400;

@@ -7,8 +7,8 @@ use crepitus_model::solver::Solver;
 use crepitus_pages::table::Table;
 use crepitus_pages::table::show::{UNKNOWN, fixed, microseconds, milli, scientific};
 use crepitus_scene::scene::Precision;
-use crepitus_study::accuracy::Study;
-use crepitus_study::accuracy::target::{self, OnTarget, recorded};
+use crepitus_studies::accuracy::Study;
+use crepitus_studies::accuracy::target::{self, OnTarget, recorded};
 use std::borrow::Cow;
 
 /// The cheapest solver and the exact one, on the host and on the controller, and what holding the torque costs whoever

@@ -1,7 +1,7 @@
 //! Orders of convergence by kind of motion, as a table for the terminal.
 
 use crepitus_pages::table::Table;
-use crepitus_study::accuracy::orders::{Order, Orders};
+use crepitus_studies::accuracy::orders::{Order, Orders};
 use std::fmt::Write;
 
 /// A block a convention, a line a solver, a column a motion; nothing without

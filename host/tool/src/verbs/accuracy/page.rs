@@ -8,12 +8,13 @@ use crate::results::{Files, footer, report_files};
 use crepitus_model::Convention;
 use crepitus_pages::table::show::microseconds;
 use crepitus_scene::cpu_time::CLOCK;
-use crepitus_study::accuracy::orders::{Order, Orders};
-use crepitus_study::accuracy::points_table::points_table;
-use crepitus_study::accuracy::symptoms::table::symptoms_table;
-use crepitus_study::accuracy::target::table::target_table;
-use crepitus_study::accuracy::{Point, Study};
-use crepitus_study_pages::{Section, StudyText, accuracy};
+use crepitus_studies::accuracy::orders::{Order, Orders};
+use crepitus_studies::accuracy::points_table::points_table;
+use crepitus_studies::accuracy::report;
+use crepitus_studies::accuracy::symptoms::table::symptoms_table;
+use crepitus_studies::accuracy::target::table::target_table;
+use crepitus_studies::accuracy::{Point, Study};
+use crepitus_studies::{Section, StudyText};
 
 /// The files of a study; each diagram as an SVG of its own if asked for.
 pub(super) fn files(
@@ -21,8 +22,8 @@ pub(super) fn files(
     summary: &Summary<'_>,
     pictures: &Pictures,
 ) -> Result<Files, Failure> {
-    let page = accuracy::html(study, &text(study, summary));
-    let pictures = pictures.files(|paper| accuracy::pictures(&study.points, paper))?;
+    let page = report::html(study, &text(study, summary));
+    let pictures = pictures.files(|paper| report::pictures(&study.points, paper))?;
     let mut files = report_files(page, summary, pictures)?;
     files.push((
         "points.csv".to_owned(),

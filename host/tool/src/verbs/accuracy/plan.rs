@@ -6,9 +6,9 @@ use crepitus_model::Convention;
 use crepitus_scene::Overrides;
 use crepitus_scene::scene::Precision;
 use crepitus_scene::shipped;
-use crepitus_study::accuracy::study::{FULL_REPEATS, FULL_STEPS_S, QUICK_REPEATS, QUICK_STEPS_S};
-use crepitus_study::accuracy::target::inputs::TICK_S;
-use crepitus_study::accuracy::{Plan, StudyScene, scenes};
+use crepitus_studies::accuracy::study::{FULL_REPEATS, FULL_STEPS_S, QUICK_REPEATS, QUICK_STEPS_S};
+use crepitus_studies::accuracy::target::inputs::TICK_S;
+use crepitus_studies::accuracy::{Plan, StudyScene, scenes};
 
 /// Rates that a device or a simulation may have, Hz.
 const RATES_HZ: std::ops::RangeInclusive<f64> = 10.0..=1e6;

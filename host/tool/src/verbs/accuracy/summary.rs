@@ -3,7 +3,7 @@
 use super::plan::Studied;
 use crate::studying;
 use crepitus_scene::cpu_time::CLOCK;
-use crepitus_study::accuracy::Study;
+use crepitus_studies::accuracy::Study;
 use serde::Serialize;
 
 /// Version of this form.

@@ -3,9 +3,9 @@
 
 use crepitus_pages::table::show::microseconds;
 use crepitus_scene::scene::Precision;
-use crepitus_study::accuracy::symptoms::SymptomPoint;
-use crepitus_study::accuracy::symptoms::table::precisions_table;
-use crepitus_study::accuracy::target::inputs::TICK_S;
+use crepitus_studies::accuracy::symptoms::SymptomPoint;
+use crepitus_studies::accuracy::symptoms::table::precisions_table;
+use crepitus_studies::accuracy::target::inputs::TICK_S;
 
 /// Table of the symptoms at the device's tick, or the studied step that is nearest to it.
 pub(super) fn table(points: &[SymptomPoint]) -> String {
@@ -33,9 +33,9 @@ pub(super) fn table(points: &[SymptomPoint]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_study::accuracy::Study;
-    use crepitus_study::accuracy::symptoms::{SymptomPlan, add};
-    use crepitus_study::{Cancelled, Watcher};
+    use crepitus_studies::accuracy::Study;
+    use crepitus_studies::accuracy::symptoms::{SymptomPlan, add};
+    use crepitus_studies::{Cancelled, Watcher};
 
     fn point(
         form: Option<&'static str>,

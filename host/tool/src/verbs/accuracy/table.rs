@@ -2,7 +2,7 @@
 
 use crepitus_pages::table::Table;
 use crepitus_pages::table::show::{fixed, microseconds, scientific};
-use crepitus_study::accuracy::{Point, Study};
+use crepitus_studies::accuracy::{Point, Study};
 use std::fmt::Write;
 
 /// The device's tick, s.

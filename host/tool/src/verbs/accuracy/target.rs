@@ -4,10 +4,10 @@ use crate::failure::Failure;
 use crate::output::to_stderr;
 use crate::studying::Watch;
 use crepitus_emulator::on_target::{self, OnTarget};
-use crepitus_study::accuracy::target::inputs::Lengths;
-use crepitus_study::accuracy::target::table::target_table;
-use crepitus_study::accuracy::target::{self, TargetError};
-use crepitus_study::accuracy::{Study, StudyScene};
+use crepitus_studies::accuracy::target::inputs::Lengths;
+use crepitus_studies::accuracy::target::table::target_table;
+use crepitus_studies::accuracy::target::{self, TargetError};
+use crepitus_studies::accuracy::{Study, StudyScene};
 
 /// The program on an emulated core.
 pub(super) fn ladder() -> Result<OnTarget, Failure> {

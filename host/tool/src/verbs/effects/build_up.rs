@@ -2,7 +2,7 @@
 
 use crepitus_pages::table::Table;
 use crepitus_pages::table::show::{UNKNOWN, fixed, scaled};
-use crepitus_study::effects::build_up::{Measured, Rung};
+use crepitus_studies::effects::build_up::{Measured, Rung};
 
 /// A line a set of effects; nothing if there is none.
 pub(super) fn table(rungs: &[Rung]) -> String {

@@ -4,9 +4,10 @@ use super::summary::Summary;
 use crate::failure::Failure;
 use crate::pictures::Pictures;
 use crate::results::{Files, footer, report_files};
-use crepitus_study::effects::EffectsStudy;
-use crepitus_study::effects::effects_table::effects_table;
-use crepitus_study_pages::{Section, StudyText, effects};
+use crepitus_studies::effects::EffectsStudy;
+use crepitus_studies::effects::effects_table::effects_table;
+use crepitus_studies::effects::report;
+use crepitus_studies::{Section, StudyText};
 
 /// Names and contents of the files; each figure as an SVG of its own if asked
 /// for.
@@ -15,8 +16,8 @@ pub(super) fn files(
     summary: &Summary<'_>,
     pictures: &Pictures,
 ) -> Result<Files, Failure> {
-    let page = effects::html(study, &text(study, summary));
-    let pictures = pictures.files(|paper| effects::pictures(study, paper))?;
+    let page = report::html(study, &text(study, summary));
+    let pictures = pictures.files(|paper| report::pictures(study, paper))?;
     let mut files = report_files(page, summary, pictures)?;
     files.push((
         "effects.csv".to_owned(),

@@ -2,10 +2,10 @@
 
 use super::table::torque;
 use crepitus_pages::table::Table;
-use crepitus_study::effects::Answer;
-use crepitus_study::effects::answer::{Dropped, Subset};
-use crepitus_study::effects::influence::Difference;
-use crepitus_study::limits::Limited;
+use crepitus_studies::effects::Answer;
+use crepitus_studies::effects::answer::{Dropped, Subset};
+use crepitus_studies::effects::influence::Difference;
+use crepitus_studies::limits::Limited;
 use std::fmt::Write;
 
 /// The smallest set, what was dropped, and why the rest is kept.

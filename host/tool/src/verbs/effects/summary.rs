@@ -5,8 +5,8 @@ use super::table::torque;
 use crate::studying;
 use crepitus_plant::effects::EFFECTS;
 use crepitus_scene::cpu_time::CLOCK;
-use crepitus_study::effects::EffectsStudy;
-use crepitus_study::effects::variant::Change;
+use crepitus_studies::effects::EffectsStudy;
+use crepitus_studies::effects::variant::Change;
 use serde::Serialize;
 
 /// Version of this form.

@@ -3,9 +3,9 @@
 use crepitus_pages::table::Table;
 use crepitus_pages::table::show::{UNKNOWN, milli, scaled, signed};
 use crepitus_scene::cpu_time::CLOCK;
-use crepitus_study::effects::effects_table::{cost, effects_table};
-use crepitus_study::effects::variant::Change;
-use crepitus_study::effects::{EffectsStudy, Row};
+use crepitus_studies::effects::effects_table::{cost, effects_table};
+use crepitus_studies::effects::variant::Change;
+use crepitus_studies::effects::{EffectsStudy, Row};
 
 /// Effects that the scene does not have and that are listed all the same: those that would be felt most.
 const OTHERS: usize = 3;

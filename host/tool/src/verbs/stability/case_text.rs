@@ -1,7 +1,7 @@
 //! All about one case, on a terminal.
 
 use crate::screen::{WIDTH, wrapped};
-use crepitus_study::stability::Row;
+use crepitus_studies::stability::Row;
 use std::fmt::Write;
 
 /// Indentation of the text, columns.

@@ -7,10 +7,11 @@ use crate::results::{self, Files, REPORT, footer, report_files};
 use crate::screen::screen;
 use crate::studying::Watch;
 use crepitus_files::json_path;
-use crepitus_study::coupled::{
+use crepitus_studies::coupled::report;
+use crepitus_studies::coupled::{
     CoupledError, CoupledStudy, GEARS, LAGS, Margin, Setting, Verdict, most_share, run, tables,
 };
-use crepitus_study_pages::{Section, StudyText, coupled};
+use crepitus_studies::{Section, StudyText};
 use serde::{Serialize, Serializer};
 use serde_json::json;
 use std::fmt::Write as _;
@@ -193,8 +194,8 @@ fn onsets_and_margins(study: &CoupledStudy) -> String {
 }
 
 fn files(study: &CoupledStudy, summary: &Summary, pictures: &Pictures) -> Result<Files, Failure> {
-    let page = coupled::html(study, &words(summary, &answer(study)));
-    let pictures = pictures.files(|_| coupled::pictures(study))?;
+    let page = report::html(study, &words(summary, &answer(study)));
+    let pictures = pictures.files(|_| report::pictures(study))?;
     let mut files = report_files(page, summary, pictures)?;
     let margins = [study.presets.as_slice(), &study.extras].concat();
     let contents = [

@@ -7,7 +7,7 @@ use crepitus_model::solver::Solver;
 use crepitus_pages::table::Table;
 use crepitus_pages::table::show::UNKNOWN;
 use crepitus_scene::scene::Precision;
-use crepitus_study::stability::{Cell, Failure, Matrix, Rung, Subject, Verdict};
+use crepitus_studies::stability::{Cell, Failure, Matrix, Rung, Subject, Verdict};
 
 /// The device's solver, what the simplest one does instead, and what the one does that is always stable; then what must hold.
 pub(super) fn answer(matrix: &Matrix, summary: &Summary<'_>) -> String {

@@ -1,7 +1,7 @@
 //! The catalogue of hard cases as text: for a terminal, and as a page of the
 //! book, whose source this is.
 
-use crepitus_study::stability::{Case, criterion};
+use crepitus_studies::stability::{Case, criterion};
 use serde_json::{Value, json};
 use std::fmt::Write;
 

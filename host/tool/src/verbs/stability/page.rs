@@ -5,10 +5,11 @@ use super::summary::Summary;
 use crate::failure::Failure;
 use crate::pictures::Pictures;
 use crate::results::{Files, footer, report_files};
-use crepitus_study::stability::Matrix;
-use crepitus_study::stability::cases_table::cases_table;
-use crepitus_study::stability::story::Stories;
-use crepitus_study_pages::{Section, StudyText, stability};
+use crepitus_studies::stability::Matrix;
+use crepitus_studies::stability::cases_table::cases_table;
+use crepitus_studies::stability::report;
+use crepitus_studies::stability::story::Stories;
+use crepitus_studies::{Section, StudyText};
 
 /// The report, the cells and the summary; the matrix and each story as an SVG
 /// of its own if asked for.
@@ -18,8 +19,8 @@ pub(super) fn files(
     summary: &Summary<'_>,
     pictures: &Pictures,
 ) -> Result<Files, Failure> {
-    let page = stability::html(matrix, stories, &text(matrix, summary));
-    let pictures = pictures.files(|paper| stability::pictures(matrix, stories, paper))?;
+    let page = report::html(matrix, stories, &text(matrix, summary));
+    let pictures = pictures.files(|paper| report::pictures(matrix, stories, paper))?;
     let mut files = report_files(page, summary, pictures)?;
     files.push((
         "cases.csv".to_owned(),

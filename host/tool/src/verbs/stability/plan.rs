@@ -4,7 +4,7 @@ use super::Arguments;
 use crate::failure::Failure;
 use crepitus_model::Convention;
 use crepitus_scene::scene::Precision;
-use crepitus_study::stability::{Case, Plan, Rung, Subject, catalogue};
+use crepitus_studies::stability::{Case, Plan, Rung, Subject, catalogue};
 
 pub(super) fn plan(arguments: &Arguments) -> Result<Plan, Failure> {
     Ok(Plan {

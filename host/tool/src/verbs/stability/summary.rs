@@ -1,8 +1,8 @@
 //! `summary.json` of the matrix.
 
 use crate::studying;
-use crepitus_study::stability::cases_table::cases_table;
-use crepitus_study::stability::{Case, Cell, Matrix, Plan, Row, Rung, Verdict};
+use crepitus_studies::stability::cases_table::cases_table;
+use crepitus_studies::stability::{Case, Cell, Matrix, Plan, Row, Rung, Verdict};
 use serde::{Serialize, Serializer};
 
 /// Version of this form.

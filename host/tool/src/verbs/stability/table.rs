@@ -2,7 +2,7 @@
 
 use super::summary::{CaseSummary, Summary};
 use crepitus_pages::table::Table;
-use crepitus_study::stability::{Matrix, Subject};
+use crepitus_studies::stability::{Matrix, Subject};
 use std::fmt::Write;
 
 /// `exact-events, frozen, f32`.

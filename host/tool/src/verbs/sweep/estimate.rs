@@ -4,7 +4,9 @@ use super::{no_thread, words};
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crate::progress;
-use crepitus_sweep::{Ended, Format, Parts, Plan, Receiver, Row, Shard, run_all, table, totals};
+use crepitus_studies::sweep::{
+    Ended, Format, Parts, Plan, Receiver, Row, Shard, run_all, table, totals,
+};
 use serde_json::json;
 use std::io;
 use std::iter::once;

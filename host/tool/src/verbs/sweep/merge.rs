@@ -4,7 +4,7 @@ use super::{Arguments, store_failure, table, warn_of_failed, words};
 use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crepitus_files::json_path;
-use crepitus_sweep::Store;
+use crepitus_studies::sweep::Store;
 use serde_json::json;
 use std::path::PathBuf;
 

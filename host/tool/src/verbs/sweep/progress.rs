@@ -2,7 +2,7 @@
 
 use crate::interrupt;
 use crate::progress;
-use crepitus_sweep::{Ended, Receiver, Row, Store, StoreError};
+use crepitus_studies::sweep::{Ended, Receiver, Row, Store, StoreError};
 use std::io;
 
 /// Reason for the early end of a sweep.

@@ -1,6 +1,6 @@
 //! Vibration that the hand gets, as tables for the terminal.
 
-use crepitus_study::vibration::{AtSpeed, Step, VibrationStudy, tables};
+use crepitus_studies::vibration::{AtSpeed, Step, VibrationStudy, tables};
 
 /// Levels of a bare knee, of the motor alone, and with the actuator: a line a speed.
 pub(super) fn answer(study: &VibrationStudy) -> String {

@@ -2,8 +2,8 @@
 
 use super::{at_step, tightest, value, why_not};
 use crate::verbs::accuracy::words;
-use crepitus_study::accuracy::answer::{Answer, Candidate, Cycles};
-use crepitus_study::limits::Limited;
+use crepitus_studies::accuracy::answer::{Answer, Candidate, Cycles};
+use crepitus_studies::limits::Limited;
 use std::fmt::Write;
 
 /// Recommendation for the target, and what else would do.

@@ -1,0 +1,46 @@
+//! Cost of accuracy in time: every rung of the solver ladder, in both
+//! precisions, over a range of steps, against the event-driven reference.
+//!
+//! ```text
+//! scenes ─┬─> reference: true events, true torque ─┐
+//!         └─> each rung × precision × step ────────┴─> errors ─┐
+//!             each rung × precision × step, interleaved ─> time ┴─> points ─┬─> points.csv, orders
+//!                                                                           └─> an answer to a need
+//! ```
+//!
+//! | to find | look in |
+//! |---|---|
+//! | what is studied | [`scenes`] |
+//! | the whole study and its results | [`study`], [`results`] |
+//! | one point of the diagram, and its file | [`point`], [`points_table`] |
+//! | the torque to compare with, at the ends of steps and within them | [`reference_torque`], [`held_torque`] |
+//! | accuracy and time of a run | [`measure`], [`timing`] |
+//! | cost of a step on the device's core | [`target`] |
+//! | the other symptoms: errors, and cost over a step of crepitus | [`symptoms`] |
+//! | orders of convergence, and on motions of other kinds | [`orders`], [`convergence`] |
+//! | limits, and the cheapest rung within them | [`need`], [`mod@answer`] |
+
+pub mod actuator;
+pub mod answer;
+pub mod convergence;
+pub mod held_torque;
+pub mod measure;
+pub mod need;
+pub mod orders;
+pub mod point;
+pub mod points_table;
+pub mod reference_torque;
+pub mod report;
+pub mod results;
+pub mod scenes;
+pub mod study;
+pub mod symptoms;
+pub mod target;
+pub mod timing;
+
+pub use answer::{Question, answer};
+pub use need::Need;
+pub use point::Point;
+pub use results::Study;
+pub use scenes::StudyScene;
+pub use study::{Plan, run};

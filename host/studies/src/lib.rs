@@ -1,0 +1,48 @@
+//! # Studies
+//!
+//! Cost and robustness of solvers, measured over every rung of the ladder,
+//! every convention and both precisions; influence and cost of each effect
+//! of a scene.
+//!
+//! | to find | look in |
+//! |---|---|
+//! | what accuracy costs in time | [`accuracy`] |
+//! | the hard cases, and their verdicts | [`stability`] |
+//! | where the device stays quiet on a leg | [`coupled`] |
+//! | influence of each effect on the torque at the hand, and its cost | [`effects`] |
+//! | what the hand gets of the actuator on the shell | [`vibration`] |
+//! | the other symptoms, stepped and by their reference | [`symptoms`] |
+//! | a motion cut into steps | [`sampling`] |
+//! | the true events, their matching, and the errors | [`true_events`], [`matching`], [`event_errors`] |
+//! | limits parsed from text | [`limits`] |
+//! | progress and cancellation of a study | [`watcher`] |
+//! | pictures that explain one hard case, or a build-up, each | [`story`] |
+//! | many runs of one scene, a row each | [`sweep`] |
+//!
+//! The page of a study, with its charts, is its module `report`: a study yields data, there it is decided how they are drawn.
+
+// Counts become numbers to be drawn or averaged; none comes near 2^53.
+#![allow(clippy::cast_precision_loss)]
+
+pub mod accuracy;
+pub mod coupled;
+pub mod effects;
+pub mod event_errors;
+pub mod limits;
+pub mod matching;
+mod parallel;
+mod random;
+mod report_text;
+pub mod sampling;
+pub mod stability;
+pub mod story;
+pub mod sweep;
+pub mod symptoms;
+pub mod true_events;
+pub mod vibration;
+pub mod watcher;
+
+pub use crepitus_pages::plot::page::Section;
+pub use crepitus_pages::plot::{Column, Paper, Picture};
+pub use report_text::StudyText;
+pub use watcher::{Cancelled, StudyError, Watcher};

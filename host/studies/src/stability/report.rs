@@ -1,0 +1,38 @@
+//! The report of the stability study: which hard cases hold, as a heat map
+//! with numbers.
+//!
+//! ```text
+//! Matrix ─┬─ Columns: convention × rung ─┬─> heat map ─┐
+//!         └─ Look: colour, sign, number ─┼─> matrix.svg├─> page, pictures
+//!                                        └─> details ──┤
+//! stories ─────────────────────────────────────────────┘
+//! ```
+//!
+//! What a verdict looks like is decided in one place (`look`), so that page
+//! and picture cannot differ.
+
+mod columns;
+mod details;
+mod heat_map;
+mod look;
+mod page;
+mod picture;
+mod scale;
+
+use crate::stability::Matrix;
+use crate::stability::story::Stories;
+
+use crate::{Paper, Picture, StudyText, story};
+
+/// The report as one HTML page, complete in itself.
+pub fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText) -> String {
+    page::html(matrix, stories, text)
+}
+
+/// The matrix, in brief, and every story as files of their own.
+pub fn pictures(matrix: &Matrix, stories: Option<&Stories>, paper: Paper) -> Vec<Picture> {
+    let figures = stories.map_or_else(Vec::new, |story| story::figures(story, paper));
+    let mut pictures = vec![picture::picture(matrix)];
+    pictures.extend(crepitus_pages::plot::pictures(&figures));
+    pictures
+}

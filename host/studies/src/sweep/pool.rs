@@ -1,0 +1,189 @@
+//! Thread pool of a sweep; rows come as runs end, nearly in the order of their points.
+
+use crate::sweep::plan::Plan;
+use crate::sweep::row::Row;
+use crepitus_scene::{Observer, run};
+use std::io;
+use std::ops::Range;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+/// Poll interval of the receiver while no run ends.
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
+
+/// Capacity of the queue of finished rows, per thread.
+const WAITING: usize = 64;
+
+/// The most threads: more than any computer has cores.
+const MOST_THREADS: usize = 4096;
+
+/// Receiver of rows.
+pub trait Receiver {
+    /// Error that ends the sweep.
+    type Error: From<Ended>;
+
+    /// Takes the row of a run.
+    fn row(&mut self, row: Row) -> Result<(), Self::Error>;
+
+    /// Polls for events of the caller, at least 20 times a second.
+    fn poll(&mut self) -> Result<(), Self::Error>;
+}
+
+/// Reason why a run gave no row.
+#[derive(Debug)]
+pub enum Ended {
+    /// [`Stop`] was set.
+    Stopped,
+    /// A file of its own could not be written.
+    Failed(io::Error),
+    /// Not one thread could be started.
+    NoThread(io::Error),
+}
+
+/// Runs the points of `ranges` by `run` on `threads` threads: at least one, no more than
+/// points, and fewer where the system gives fewer. Returns how many there were.
+///
+/// # Errors
+/// The receiver's, or of a run's own file; runs that have begun are abandoned then. Or there is
+/// no thread.
+pub fn run_all<R: Receiver>(
+    ranges: impl IntoIterator<Item = Range<u64>, IntoIter: Send>,
+    threads: usize,
+    receiver: &mut R,
+    run: impl Fn(u64, &Stop) -> Result<Row, Ended> + Sync,
+) -> Result<usize, R::Error> {
+    let ranges: Vec<_> = ranges.into_iter().collect();
+    let count: u64 = ranges.iter().map(|range| range.end - range.start).sum();
+    let most = usize::try_from(count).unwrap_or(MOST_THREADS);
+    let threads = threads.min(most).clamp(1, MOST_THREADS);
+    let points = Mutex::new(ranges.into_iter().flatten());
+    let stop = Stop::default();
+    thread::scope(|scope| {
+        let (sender, rows) = mpsc::sync_channel(WAITING * threads);
+        let mut running = 0;
+        for _ in 0..threads {
+            let (sender, points, run, stop) = (sender.clone(), &points, &run, &stop);
+            let started = thread::Builder::new().spawn_scoped(scope, move || {
+                // A poisoned lock: another thread panicked outside of a run.
+                while let Some(point) = points.lock().ok().and_then(|mut points| points.next()) {
+                    let row = run(point, stop);
+                    let is_last = row.is_err();
+                    if sender.send(row).is_err() || is_last {
+                        break;
+                    }
+                }
+            });
+            match started {
+                Ok(_) => running += 1,
+                Err(error) if running == 0 => return Err(Ended::NoThread(error).into()),
+                Err(_) => break,
+            }
+        }
+        drop(sender);
+        let outcome = receive(&rows, receiver);
+        if outcome.is_err() {
+            stop.0.store(true, Ordering::Relaxed);
+        }
+        // Who waits to send ends, too.
+        drop(rows);
+        outcome.map(|()| running)
+    })
+}
+
+fn receive<R: Receiver>(
+    rows: &mpsc::Receiver<Result<Row, Ended>>,
+    receiver: &mut R,
+) -> Result<(), R::Error> {
+    loop {
+        match rows.recv_timeout(POLL_INTERVAL) {
+            Ok(Ok(row)) => receiver.row(row)?,
+            Ok(Err(Ended::Stopped)) | Err(RecvTimeoutError::Timeout) => {}
+            Ok(Err(ended)) => return Err(ended.into()),
+            Err(RecvTimeoutError::Disconnected) => return Ok(()),
+        }
+        receiver.poll()?;
+    }
+}
+
+/// Stop flag of the runs.
+#[derive(Debug, Default)]
+pub struct Stop(AtomicBool);
+
+impl Stop {
+    /// Returns an error if the flag is set.
+    ///
+    /// # Errors
+    /// [`Ended::Stopped`].
+    pub fn check(&self) -> Result<(), Ended> {
+        if self.0.load(Ordering::Relaxed) {
+            Err(Ended::Stopped)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// Observer that only checks the stop flag.
+struct Unseen<'s>(&'s Stop);
+
+impl Observer for Unseen<'_> {
+    type Error = Ended;
+    const WANTS_ROWS: bool = false;
+
+    fn progress(&mut self, _: f64) -> Result<(), Ended> {
+        self.0.check()
+    }
+}
+
+/// Runs a point without a trace.
+///
+/// # Errors
+/// [`Ended::Stopped`].
+pub fn totals(plan: &Plan, point: u64, stop: &Stop) -> Result<Row, Ended> {
+    stop.check()?;
+    plan.run(point, |scene| run(scene, &mut Unseen(stop)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// Wants nothing.
+    struct Nobody;
+
+    impl Receiver for Nobody {
+        type Error = Ended;
+
+        fn row(&mut self, _: Row) -> Result<(), Ended> {
+            Ok(())
+        }
+
+        fn poll(&mut self) -> Result<(), Ended> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn there_are_no_more_threads_than_points() {
+        let seen = Mutex::new(BTreeSet::new());
+        let ran = Mutex::new(BTreeSet::new());
+        let outcome = run_all([0..2, 5..6], usize::MAX, &mut Nobody, |point, _| {
+            ran.lock().unwrap().insert(point);
+            seen.lock()
+                .unwrap()
+                .insert(format!("{:?}", thread::current().id()));
+            thread::sleep(Duration::from_millis(20));
+            Ok(Row {
+                index: point,
+                cells: Vec::new(),
+            })
+        });
+        assert_eq!(outcome.ok(), Some(3));
+        assert_eq!(ran.into_inner().unwrap(), BTreeSet::from([0, 1, 5]));
+        assert!(seen.into_inner().unwrap().len() <= 3);
+    }
+}
