@@ -12,7 +12,7 @@
 //!
 //! The rules (`rules`) are those of the model's `frozen` and `velocity_match`
 //! modules, written a second time and for the true motion, so that each checks
-//! the other. `crepitus-crosscheck` checks both by other mathematics.
+//! the other. `tests/crosscheck` checks both by other mathematics.
 //!
 //! The other symptoms are in [`symptoms`]. They, too, are solved from event to
 //! event, each on its own.

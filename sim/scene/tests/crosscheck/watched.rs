@@ -5,9 +5,10 @@
 //! if a report times out, or the child dies, that is the case's result, and
 //! another child continues with the next.
 
+use crate::corpus::Case;
 use crate::theirs::Theirs;
 use crate::wire;
-use std::io::{self, BufReader};
+use std::io::{self, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
@@ -16,6 +17,10 @@ use std::time::Duration;
 /// Default timeout of a case. Cases take milliseconds; on a busy machine they may take a
 /// thousand times that.
 pub const LIMIT: Duration = Duration::from_secs(10);
+
+/// The test that is the child, and the variable with the cases that it is to write.
+pub const CHILD: &str = "watched::what_the_reference_says";
+const CASES: &str = "CREPITUS_REFERENCE_CASES";
 
 /// Result of a case.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +43,7 @@ pub struct Watched {
 }
 
 impl Watched {
-    /// Cases `from..to`, by the program `program`, whose verb `reference`
+    /// Cases `from..to`, by the program `program`, whose test [`CHILD`]
     /// writes them; each within `limit`.
     pub fn new(program: &Path, limit: Duration, from: u64, to: u64) -> Self {
         Self {
@@ -52,9 +57,8 @@ impl Watched {
 
     fn start(&self) -> io::Result<(Child, Receiver<(u64, Theirs)>)> {
         let mut child = Command::new(&self.program)
-            .arg("reference")
-            .args(["--from", &self.next.to_string()])
-            .args(["--to", &self.end.to_string()])
+            .args(["--exact", CHILD, "--nocapture"])
+            .env(CASES, format!("{} {}", self.next, self.end))
             // Held open: a child ends when its parent has ended.
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -121,5 +125,27 @@ impl Iterator for Watched {
 impl Drop for Watched {
     fn drop(&mut self) {
         self.stop();
+    }
+}
+
+/// The child: alone it has no cases, and writes none.
+#[test]
+fn what_the_reference_says() {
+    let cases = std::env::var(CASES).unwrap_or_else(|_| "0 0".to_owned());
+    let (from, to) = cases.split_once(' ').expect("two numbers");
+    let [from, to] = [from, to].map(|number| number.parse::<u64>().expect("a number"));
+    if to > from {
+        // The parent holds our input open. When it has ended, a case that never
+        // ends must end, too.
+        std::thread::spawn(|| {
+            let _ = io::copy(&mut io::stdin(), &mut io::sink());
+            std::process::exit(1);
+        });
+    }
+    let mut out = io::stdout().lock();
+    // The test's name may stand before it.
+    writeln!(out).expect("the parent reads");
+    for number in from..to {
+        wire::write(&mut out, number, &Theirs::of(&Case::new(number))).expect("the parent reads");
     }
 }

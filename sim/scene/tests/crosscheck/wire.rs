@@ -51,9 +51,12 @@ pub fn write(out: &mut impl Write, case: u64, theirs: &Theirs) -> io::Result<()>
     out.flush()
 }
 
-/// Reads one case; `None` at the end and where a line is broken off.
+/// Reads one case, after what the harness of the tests says; `None` at the end and where a line is broken off.
 pub fn read(input: &mut impl BufRead) -> Option<(u64, Theirs)> {
-    let head = line(input)?;
+    let mut head = line(input)?;
+    while !head.starts_with("case ") {
+        head = line(input)?;
+    }
     let mut words = head.split(' ');
     if words.next() != Some("case") {
         return None;

@@ -1,6 +1,6 @@
 //! # A second solver, and a corpus to compare it on
 //!
-//! Every other solver is measured against `reference`. This crate checks
+//! Every other solver is measured against `reference`. This program checks
 //! `reference`: it solves the same problems by other mathematics, with
 //! twice the digits, on thousands of random cases. The book's page on the
 //! cross-check has the equations and the figures.
@@ -16,20 +16,26 @@
 //! | `reference` under a time limit, and its sign law | [`theirs`], [`wire`], [`watched`] |
 //! | the verdict on a case | [`compare`] |
 //! | pieces, counts, tables | [`journal`], [`summary`] |
+//! | the tests on the corpus; one case in full | [`runs`], [`show`] |
+//! | the tests on the cases with 50 digits | [`reference_cases`] |
+#![allow(unreachable_pub)]
 
-pub mod circle;
-pub mod compare;
-pub mod corpus;
-pub mod double_double;
-pub mod event;
-pub mod first_fall;
-pub mod journal;
-pub mod rounding;
-pub mod series;
-pub mod shaft;
-pub mod solver;
-pub mod summary;
-pub mod swing;
-pub mod theirs;
-pub mod watched;
-pub mod wire;
+mod circle;
+mod compare;
+mod corpus;
+mod double_double;
+mod event;
+mod first_fall;
+mod journal;
+mod reference_cases;
+mod rounding;
+mod runs;
+mod series;
+mod shaft;
+mod show;
+mod solver;
+mod summary;
+mod swing;
+mod theirs;
+mod watched;
+mod wire;

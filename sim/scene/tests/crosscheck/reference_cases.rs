@@ -1,7 +1,7 @@
 //! The second solver against the cases computed with 50 digits.
 
-use crepitus_crosscheck::double_double::Dd;
-use crepitus_crosscheck::solver::{Problem, solve};
+use crate::double_double::Dd;
+use crate::solver::{Problem, solve};
 use crepitus_model::{Convention, EventKind, Parameters, Settings};
 use crepitus_plant::Motion;
 use crepitus_plant::motion::VelocityKnot;

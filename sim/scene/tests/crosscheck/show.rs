@@ -1,16 +1,28 @@
 //! One case in full.
 
-use crepitus_crosscheck::compare::{compare, ours};
-use crepitus_crosscheck::corpus::{Case, MOST_EVENTS};
-use crepitus_crosscheck::double_double::Dd;
-use crepitus_crosscheck::watched::{Answer, LIMIT, Watched};
+use crate::compare::{compare, ours};
+use crate::corpus::{Case, MOST_EVENTS};
+use crate::double_double::Dd;
+use crate::watched::{Answer, LIMIT, Watched};
 use crepitus_model::Parameters;
 use crepitus_model::parameters::Tabled;
 use crepitus_plant::Motion;
 use std::io;
 
+/// Prints the case that `CREPITUS_CASE` numbers, or one on which the solvers agree.
+#[test]
+fn a_case_in_full() {
+    let number = std::env::var("CREPITUS_CASE").ok();
+    let agree = case(
+        number
+            .as_ref()
+            .map_or(17, |number| number.parse().expect("a number")),
+    );
+    assert!(agree.expect("a child") || number.is_some());
+}
+
 /// Prints case `number`; whether the solvers agree.
-pub(crate) fn case(number: u64) -> io::Result<bool> {
+fn case(number: u64) -> io::Result<bool> {
     let case = Case::new(number);
     let settings = &case.settings;
     println!("case {number}");
@@ -102,5 +114,5 @@ pub(crate) fn case(number: u64) -> io::Result<bool> {
     }
     let comparison = compare(&case, &answer);
     println!("{comparison:?}");
-    Ok(comparison.verdict == crepitus_crosscheck::compare::Verdict::Agreed)
+    Ok(comparison.verdict == crate::compare::Verdict::Agreed)
 }

@@ -95,11 +95,6 @@ impl Counts {
         self.worst = self.worst.max(other.worst);
         self.notable.extend_from_slice(&other.notable);
     }
-
-    /// Returns whether anything is wrong.
-    pub fn is_clean(&self) -> bool {
-        self.disagreed == 0 && self.law_broken == 0
-    }
 }
 
 /// A row: what it counts, and the counts.
@@ -209,22 +204,16 @@ impl Tally {
     }
 }
 
-/// Runs a piece; `progress` is called for every case.
+/// Runs a piece.
 ///
 /// # Errors
 /// If no child process can be started.
-pub fn run_piece(
-    program: &Path,
-    limit: Duration,
-    piece: u64,
-    mut progress: impl FnMut(),
-) -> io::Result<Tally> {
+pub fn run_piece(program: &Path, limit: Duration, piece: u64) -> io::Result<Tally> {
     let mut tally = Tally::new(piece);
     for answer in Watched::new(program, limit, piece * PIECE, (piece + 1) * PIECE) {
         let (number, answer) = answer?;
         let case = Case::new(number);
         tally.add(&case, &compare(&case, &answer));
-        progress();
     }
     Ok(tally)
 }
@@ -244,19 +233,6 @@ pub fn read(path: &Path) -> io::Result<Vec<Vec<Row>>> {
         .map(<[Row]>::to_vec)
         .take_while(|piece| piece.iter().all(|row| row.piece == piece[0].piece))
         .collect())
-}
-
-/// Writes a journal with these pieces and nothing else.
-///
-/// # Errors
-/// Errors of the file system.
-pub fn rewrite(path: &Path, pieces: &[Vec<Row>]) -> io::Result<()> {
-    let mut text = format!("{HEADER}\n");
-    for row in pieces.iter().flatten() {
-        text.push_str(&row.line());
-        text.push('\n');
-    }
-    fs::write(path, text)
 }
 
 /// Appends a piece in one write.
