@@ -28,8 +28,8 @@ def built():
     # Build scripts count, too, and would write where they are started.
     counts = str(BUILD / "build-%p.profraw")
     flags = {"RUSTFLAGS": "-C instrument-coverage", "CARGO_INCREMENTAL": "0", "LLVM_PROFILE_FILE": counts}
-    command = ["cargo", "build", "--release", "-p", "crepitus-fuzz-bodies", "--example", "replay"]
-    subprocess.run([*command, "--target-dir", BUILD], check=True, cwd=ROOT, env=os.environ | flags)
+    command = ["cargo", "build", "--release", "--example", "replay"]
+    subprocess.run([*command, "--target-dir", BUILD], check=True, cwd=ROOT / "fuzz", env=os.environ | flags)
     if REPLAY.read_bytes() != before:
         shutil.rmtree(GROWN / "places", ignore_errors=True)
 

@@ -1,4 +1,4 @@
 //! Any bytes to the readers of recordings: see the body.
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| crepitus_fuzz_bodies::recording::body(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| crepitus_fuzz::recording::body(data));

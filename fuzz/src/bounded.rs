@@ -1,7 +1,7 @@
 //! Every target, for a few seconds, on stable: all files of its corpus, and
 //! inputs that are nearly one of them. They are the same in every run.
 
-use crepitus_fuzz_bodies::TARGETS;
+use crate::TARGETS;
 use fastrand::Rng;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -16,11 +16,18 @@ const CHANGED_CHAINS: u64 = 600;
 /// The longest of them, in bytes.
 const LONGEST: usize = 4096;
 
+/// The folder of the targets. The program of these tests is that of another package.
+fn fuzz() -> PathBuf {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    let mut folders = package.map(|folder| folder.join("fuzz"));
+    folders
+        .find(|fuzz| fuzz.join("corpus").is_dir())
+        .expect("the folder of the targets")
+}
+
 /// The corpus of a target, in the order of its names.
 fn corpus(target: &str) -> Vec<(PathBuf, Vec<u8>)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../corpus")
-        .join(target);
+    let folder = fuzz().join("corpus").join(target);
     let mut files: Vec<_> = fs::read_dir(&folder)
         .unwrap_or_else(|e| panic!("{}: {e}", folder.display()))
         .map(|entry| entry.expect("an entry of the corpus").path())
@@ -116,7 +123,7 @@ fn hold(target: &str) {
 
 #[test]
 fn every_target_has_its_folder_and_its_fuzz_target() {
-    let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let fuzz = fuzz();
     let manifest = fs::read_to_string(fuzz.join("Cargo.toml")).expect("the manifest");
     for (name, _) in TARGETS {
         assert!(fuzz.join("corpus").join(name).is_dir(), "{name}");

@@ -3,7 +3,7 @@
 //! One file a fuzz target. Each has a `body` that turns any bytes into inputs
 //! and panics when a law is broken; the law stands at the head of its file.
 //! `cargo fuzz` searches with them on the nightly toolchain, and
-//! `tests/bounded.rs` replays the corpus and its near neighbours on stable.
+//! `bounded.rs` replays the corpus and its near neighbours on stable.
 //!
 //! | target | input made of the bytes |
 //! |---|---|
@@ -19,7 +19,11 @@
 //! | [`symptoms`] | samples, and changes of all symptoms under way |
 //! | [`chain`] | requests of hosts, faults of the wires, restarts: host, comms, link, drive |
 
+#![cfg_attr(test, allow(dead_code, unreachable_pub))]
+
 mod block_frames;
+#[cfg(test)]
+mod bounded;
 mod bytes;
 pub mod chain;
 pub mod comms;

@@ -19,7 +19,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::sync::LazyLock;
 
-const VECTORS: &str = include_str!("../../../protocol/golden/vectors.txt");
+const VECTORS: &str = include_str!("../../protocol/golden/vectors.txt");
 
 /// The frames of the file of golden bytes.
 static GOLDEN: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {

@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn every_key_is_one_of_a_scene() {
-        let text = include_str!("../../corpus/scene/seed-set");
+        let text = include_str!("../corpus/scene/seed-set");
         for (name, least) in [
             ("effects.crepitus.", 7),
             ("effects.hand.", 2),

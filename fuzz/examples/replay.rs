@@ -1,7 +1,7 @@
 //! Runs a target over files: `replay TARGET < names`, with a name in each line.
 //! `fuzz/places.py` builds it with coverage instrumentation.
 
-use crepitus_fuzz_bodies::TARGETS;
+use crepitus_fuzz::TARGETS;
 use std::{env, error::Error, fs, io};
 
 fn main() -> Result<(), Box<dyn Error>> {
