@@ -6,7 +6,7 @@ use std::process::Command;
 /// Inputs that the name depends on: each commit and each checkout adds a line to the log of `HEAD`, and an
 /// edit of what the program is built from makes it dirty. The index is left out: `git describe`
 /// itself writes it, so that every second build would be done twice.
-const INPUTS: [&str; 15] = [
+const INPUTS: [&str; 14] = [
     ".git/logs/HEAD",
     "Cargo.lock",
     "Cargo.toml",
@@ -20,8 +20,7 @@ const INPUTS: [&str; 15] = [
     "protocol",
     "scenes",
     "sim",
-    "table",
-    "tools/image",
+    "tools",
 ];
 
 fn main() {

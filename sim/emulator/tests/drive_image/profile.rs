@@ -12,7 +12,7 @@ use crate::tasks::{COMMAND, LINK, RENDER, SAMPLE};
 use crepitus_emulator::Time;
 use crepitus_emulator::firmware::{Program, path};
 use crepitus_emulator::mcu::{Step, Watch};
-use crepitus_image::lines::Lines;
+use crepitus_tools::image::lines::Lines;
 use std::collections::BTreeMap;
 
 /// Functions that are listed.

@@ -1,0 +1,4 @@
+//! Planted faults as they are listed: see each module.
+
+mod apply;
+mod mutants;
