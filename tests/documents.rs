@@ -246,7 +246,7 @@ fn runs_nothing(command: &str) -> Option<String> {
         return Some(format!("{command}: no such package"));
     };
     // The tool's tests lie at the root.
-    let tests = if command.contains("crepitus-tool") {
+    let tests = if command.contains("crepitus") {
         repository().join("tests")
     } else {
         folder.join("tests")

@@ -260,7 +260,7 @@ fn a_numbered_folder_stands_beside_the_wanted_one() {
 fn an_edit_after_a_clean_build_is_in_the_name_of_the_commit() {
     let home = tempfile::tempdir().unwrap();
     let root = home.path();
-    let tool = root.join("host/tool");
+    let tool = root.join("host/crepitus");
     fs::create_dir_all(tool.join("src")).unwrap();
     fs::create_dir(root.join("model")).unwrap();
     let manifest =
@@ -270,7 +270,7 @@ fn an_edit_after_a_clean_build_is_in_the_name_of_the_commit() {
     fs::write(tool.join("src/main.rs"), program).unwrap();
     fs::write(root.join("model/lib.rs"), "").unwrap();
     fs::copy(
-        repository().join("host/tool/build.rs"),
+        repository().join("host/crepitus/build.rs"),
         tool.join("build.rs"),
     )
     .unwrap();
@@ -295,7 +295,7 @@ fn an_edit_after_a_clean_build_is_in_the_name_of_the_commit() {
         );
     };
     let built = || {
-        let manifest = "--manifest-path=host/tool/Cargo.toml";
+        let manifest = "--manifest-path=host/crepitus/Cargo.toml";
         let place = "--target-dir=target";
         done(
             env!("CARGO"),
@@ -316,7 +316,7 @@ fn an_edit_after_a_clean_build_is_in_the_name_of_the_commit() {
 /// Otherwise an edit of a package would not be seen.
 #[test]
 fn the_build_script_watches_every_package_of_the_program() {
-    let script = fs::read_to_string(repository().join("host/tool/build.rs")).unwrap();
+    let script = fs::read_to_string(repository().join("host/crepitus/build.rs")).unwrap();
     let manifest = fs::read_to_string(repository().join("Cargo.toml")).unwrap();
     let paths: Vec<_> = (manifest.lines())
         .filter_map(|line| line.split_once("{ path = \"")?.1.split('"').next())
