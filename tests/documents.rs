@@ -245,8 +245,8 @@ fn runs_nothing(command: &str) -> Option<String> {
     let Some(folder) = words.next().and_then(folder_of) else {
         return Some(format!("{command}: no such package"));
     };
-    // The tool's tests lie at the root.
-    let tests = if command.contains("crepitus") {
+    // The program's tests lie at the root.
+    let tests = if folder.ends_with("host/crepitus") {
         repository().join("tests")
     } else {
         folder.join("tests")
