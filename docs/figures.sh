@@ -56,8 +56,8 @@ done
 cargo run --profile dist --features emulator --quiet -- stability --coupled --all --pictures --out target/figures/coupled >target/figures/coupled.txt
 cp target/figures/coupled/z-width.svg docs/images/z-width.svg
 echo docs/images/z-width.svg
-cargo run --profile dist --features emulator --quiet -- stability --list --long >docs/hard-cases.md
-echo docs/hard-cases.md
+cargo run --profile dist --features emulator --quiet -- stability --list --long >docs/generated/hard-cases.md
+echo docs/generated/hard-cases.md
 
 # The numbers of the page about what the hand gets are what this prints.
 cargo run --profile dist --features emulator --quiet -- vibration --draws 200 --pictures --out target/figures/vibration >target/figures/vibration.txt

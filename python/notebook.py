@@ -1,4 +1,4 @@
-"""Makes docs/python.ipynb of docs/python.md: one text, two forms.
+"""Makes docs/generated/python.ipynb of docs/python.md: one text, two forms.
 
     python python/notebook.py
 """
@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Any
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-PAGE, NOTEBOOK = DOCS / "python.md", DOCS / "python.ipynb"
+PAGE, NOTEBOOK = DOCS / "python.md", DOCS / "generated/python.ipynb"
 
 BLOCK = re.compile(r"^```python\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
+LINK = re.compile(r"\]\((?![a-z]+:|#)")
 
 
 def blocks(page: str) -> list[str]:
@@ -32,6 +33,8 @@ def notebook(page: str) -> dict[str, Any]:
         if n % 2 == 1:
             cell |= {"cell_type": "code", "execution_count": None, "outputs": []}
         else:
+            # Its links are those of the page, which lies a folder above.
+            source[:] = [LINK.sub("](../", line) for line in source]
             cell |= {"cell_type": "markdown"}
         cells.append(dict(sorted(cell.items())))
     kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}

@@ -3,7 +3,7 @@
 //! ```text
 //! faults.toml ─> scratch copy of the sources, each fault behind a switch, built once
 //!                  ├─> the hard cases, one fault in force ─┐
-//!                  └─> the model's tests, likewise        ─┴─> docs/planted-faults.md
+//!                  └─> the model's tests, likewise        ─┴─> docs/generated/planted-faults.md
 //! ```
 //!
 //! A fault replaces an expression in an exact text that occurs once in its
@@ -16,7 +16,7 @@
 //!
 //! ```text
 //! firmware.toml ─> scratch copy of the sources ─> an image a fault ─> the emulator's tests
-//!                                                   └─> docs/planted-firmware-faults.md
+//!                                                   └─> docs/generated/planted-firmware-faults.md
 //! ```
 
 //! [`mutants`] are not chosen by us: all that `cargo mutants` lists of a crate.

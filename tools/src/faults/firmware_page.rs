@@ -34,7 +34,7 @@ pub fn totals(outcomes: &[(FirmwareFault, FirmwareOutcome)]) -> String {
 pub fn page(outcomes: &[(FirmwareFault, FirmwareOutcome)]) -> String {
     let mut text = String::from(
         "# Planted faults of the firmware\n\n\
-         Made by `cargo run -p crepitus-tools --bin crepitus-faults -- --firmware --page docs/planted-firmware-faults.md`, which builds one fault at\n\
+         Made by `cargo run -p crepitus-tools --bin crepitus-faults -- --firmware --page docs/generated/planted-firmware-faults.md`, which builds one fault at\n\
          a time into a copy of the sources and runs the emulator's tests on the image: modelled silicon, not hardware. Of the drive\n\
          those that look at [registers](registers.md), locks, outputs, tasks, protected memory, the post-mortem record and\n\
          commits run first; of comms those of its registers; the others only on what those do not notice.\n\n",

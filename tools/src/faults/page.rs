@@ -42,7 +42,7 @@ pub fn totals(outcomes: &[(Fault, Outcome)]) -> String {
 pub fn page(outcomes: &[(Fault, Outcome)]) -> String {
     let mut text = String::from(
         "# Planted faults\n\n\
-         Made by `cargo run -p crepitus-tools --bin crepitus-faults -- --page docs/planted-faults.md`, which puts one fault at a time into a\n\
+         Made by `cargo run -p crepitus-tools --bin crepitus-faults -- --page docs/generated/planted-faults.md`, which puts one fault at a time into a\n\
          copy of the model and runs the [hard cases](hard-cases.md) and the model's tests on it. A check that never\n\
          fails shows nothing; this page shows which check fails for what.\n\n",
     );

@@ -1,4 +1,4 @@
-//! The configuration registers of the images are those of docs/registers.md.
+//! The configuration registers of the images are those of docs/generated/registers.md.
 
 use crate::host::image;
 use crepitus_emulator::firmware::{Program, image_for_test};
@@ -68,7 +68,7 @@ fn the_registers_are_those_of_the_page() {
         "## Comms\n\nWith a host that has enumerated it.\n\n{}",
         tables_of(&enumerated(&comms))
     );
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/registers.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/generated/registers.md");
     if std::env::var_os("CREPITUS_BLESS").is_some_and(|value| value != "0") {
         std::fs::write(&path, &page).expect("the page can be written");
         return;
@@ -81,5 +81,5 @@ fn the_registers_are_those_of_the_page() {
         lines.fold(String::new(), |all, line| all + sign + line + "\n")
     };
     let changes = differ(&known, &page, "- ") + &differ(&page, &known, "+ ");
-    assert_eq!(known, page, "docs/registers.md differs:\n{changes}{BLESS}");
+    assert_eq!(known, page, "docs/generated/registers.md differs:\n{changes}{BLESS}");
 }

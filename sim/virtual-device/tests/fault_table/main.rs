@@ -29,7 +29,7 @@ use trial::Times;
 
 /// The page of these tables.
 const PAGE: Page = Page {
-    file: "fault-matrix.md",
+    file: "generated/fault-matrix.md",
     bless: "cargo test -p crepitus-virtual-device --test fault_table -- --test-threads=1",
 };
 
@@ -81,7 +81,7 @@ fn every_fault_is_noticed_in_time_latched_and_cleared() {
                     let may =
                         (spec.within_ticks).map_or("floats already".into(), |t| t.to_string());
                     let row = format!(
-                        "| [{0}](faults.md#{1}-{0}) | {2} | {3} | {may} | {4} | {5} | {6:.1} |",
+                        "| [{0}](../faults.md#{1}-{0}) | {2} | {3} | {may} | {4} | {5} | {6:.1} |",
                         spec.name,
                         spec.fault.code(),
                         case.name,
@@ -112,7 +112,7 @@ fn every_fault_is_noticed_in_time_latched_and_cleared() {
                 }
             }
             Provocation::None(reason) => rows.push(format!(
-                "| [{0}](faults.md#{1}-{0}) | not here: {reason} | {2} | | | | |",
+                "| [{0}](../faults.md#{1}-{0}) | not here: {reason} | {2} | | | | |",
                 spec.name,
                 spec.fault.code(),
                 spec.detector.name(),
