@@ -59,7 +59,12 @@ fn a_bench_recording_gives_a_table_a_plot_and_json() {
     assert!(row("force_constant_n_per_a").contains("weight"), "{text}");
     assert!(stderr(&done).contains("nothing in the current tells a wrong mass"));
     let svg = fs::read_to_string(out.join("impedance.svg")).unwrap();
-    assert!(svg.contains("Residual (%)"));
+    for title in ["|Z| (Ω)", "Phase (°)", "Residual (%)", "Frequency (Hz)"] {
+        assert!(svg.contains(title), "{title}");
+    }
+    // Measured and fitted twice, the residual, and no number that is none.
+    assert!(svg.matches("<path").count() + svg.matches("<polyline").count() >= 5);
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
     // The file and the JSON of the command say the same.
     let json = run(&[&["--json"][..], &from].concat());
     let printed: Value = serde_json::from_str(&stdout(&json)).unwrap();

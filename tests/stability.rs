@@ -272,7 +272,8 @@ fn an_interrupt_leaves_nothing() {
 fn the_catalogue_is_a_page_of_the_book() {
     let output = run(&["stability", "--list", "--long"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let page = fs::read_to_string(support::repository().join("docs/generated/hard-cases.md")).unwrap();
+    let page =
+        fs::read_to_string(support::repository().join("docs/generated/hard-cases.md")).unwrap();
     assert!(
         stdout(&output) == page,
         "docs/generated/hard-cases.md is not what `crepitus stability --list --long` prints: run docs/figures.sh"

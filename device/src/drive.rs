@@ -29,6 +29,7 @@ pub mod heartbeat_monitor;
 pub mod idle;
 pub mod link;
 pub mod link_task;
+mod milliamperes;
 pub mod motor;
 pub mod outgoing;
 pub mod overload;

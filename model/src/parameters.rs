@@ -385,50 +385,6 @@ pub const fn same(a: &str, b: &str) -> bool {
 pub(crate) mod tests {
     use super::*;
 
-    #[test]
-    fn a_parameter_has_the_default_of_what_it_describes() {
-        for parameter in crate::render::effects::DEVICE.iter().copied().flatten() {
-            let default = match parameter.kind {
-                Kind::Number(spec) => spec.default,
-                Kind::Choice(choice) => f64::from(choice.default),
-            };
-            assert_eq!(parameter.default().to_bits(), default.to_bits());
-        }
-        let switches = crate::render::effects::DEVICE
-            .iter()
-            .map(|device| switch(device));
-        let mut ids: std::vec::Vec<_> = switches.collect();
-        let count = ids.len();
-        ids.sort_unstable();
-        ids.dedup();
-        assert!(
-            ids.len() == count && count > 1,
-            "each effect has its own switch"
-        );
-    }
-
-    #[test]
-    fn a_parameter_allows_its_range_or_its_choices_only() {
-        for parameter in crate::render::effects::DEVICE.iter().copied().flatten() {
-            let (good, bad) = match parameter.kind {
-                Kind::Number(spec) => {
-                    let beyond = 1e-9 + 0.01 * (spec.max - spec.min);
-                    ([spec.min, spec.max], [spec.min - beyond, spec.max + beyond])
-                }
-                Kind::Choice(choice) => {
-                    let last = f64::from(u8::try_from(choice.names.len()).unwrap()) - 1.0;
-                    ([0.0, last], [-1.0, last + 1.0])
-                }
-            };
-            for value in good {
-                assert!(parameter.allows(value), "{parameter:?} {value}");
-            }
-            for value in bad.into_iter().chain([f64::NAN]) {
-                assert!(!parameter.allows(value), "{parameter:?} {value}");
-            }
-        }
-    }
-
     /// Asserts what holds for the table of any settings.
     pub(crate) fn is_its_table_and_is_held_to_it<const N: usize, T: Tabled<N>>() {
         let defaults = T::defaults().values();

@@ -5,7 +5,7 @@ use crate::scene::{Scene, forget};
 use crate::signals::Signals;
 use crate::values;
 use crepitus_studies::sweep::axis::Values;
-use crepitus_studies::sweep::parts::Kind;
+use crepitus_studies::sweep::kind::Kind;
 use crepitus_studies::sweep::{
     Axis, Cell, Design, Ended, Plan, Points, Receiver, Row, Sampled, Stop, run_all, totals,
 };

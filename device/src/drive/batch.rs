@@ -5,8 +5,8 @@
 //! copied until the link sends them.
 
 use crate::counters::Counters;
-use crate::drive::command::milliamperes;
 use crate::drive::emf_check;
+use crate::drive::milliamperes::milliamperes;
 use crepitus_protocol::Revision;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::telemetry::{

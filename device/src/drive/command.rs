@@ -4,8 +4,6 @@
 mod guards;
 mod samples;
 
-pub(in crate::drive) use samples::milliamperes;
-
 use crate::counters::Counters;
 use crate::drive::Boot;
 use crate::drive::arming::Seen;

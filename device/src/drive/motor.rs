@@ -1,6 +1,5 @@
 //! The current loop of `command_motor`, and the back-EMF speed estimate.
 
-use crate::drive::plausibility::CURRENT_SLACK_A;
 use crate::drive::prepare::MotorPlan;
 use crepitus_model::Real;
 use crepitus_model::control::current_loop::{CurrentLoop, Limit};
@@ -14,6 +13,9 @@ pub enum Bridge {
     /// This voltage, V; positive drives towards growing angle.
     Driven(f32),
 }
+
+/// Largest deviation of the current from its setpoint, A.
+pub(crate) const CURRENT_SLACK_A: f32 = 0.2;
 
 /// Filter gain per tick of the back-EMF speed estimate: 50 Hz.
 const EMF_SHARE: f32 = 0.015_6;

@@ -9,16 +9,13 @@
 //! ([`emf_check`](crate::drive::emf_check)). The monitor's amplifier also feeds the
 //! comparator, which needs no program.
 
-use crate::drive::motor::Motor;
+use crate::drive::motor::{CURRENT_SLACK_A, Motor};
 use crate::drive::sampler::LOST_TICKS;
 use crepitus_model::Real;
 use crepitus_protocol::{Fault, TICK_US};
 
 /// Overcurrent threshold, A: the hardware trips there, too.
 pub const TRIP_A: f32 = 1.95;
-
-/// Largest deviation of the current from its setpoint, A.
-pub(crate) const CURRENT_SLACK_A: f32 = 0.2;
 
 /// Largest difference of the two current sensors, A: 2 × 1 % of the range, and
 /// the noise of two conversions.

@@ -22,7 +22,7 @@
 //! | USB | comms | [`usb`] |
 //! | parameters in flash | comms | [`flash`] |
 //!
-//! All `unsafe` code is in `raw.rs`, one short file.
+//! All `unsafe` code is in `raw.rs` and, for the entries of exceptions, in `exceptions.rs`.
 //! Every wait is bounded, except before the first task.
 #![cfg_attr(not(test), no_std)]
 
@@ -42,6 +42,8 @@ pub mod converter;
 #[cfg(target_os = "none")]
 pub mod crash;
 #[cfg(target_os = "none")]
+mod crash_record;
+#[cfg(target_os = "none")]
 pub mod crc_unit;
 #[cfg(target_os = "none")]
 pub mod drive_board;
@@ -49,6 +51,8 @@ pub mod drive_board;
 pub mod enable_line;
 #[cfg(target_os = "none")]
 pub mod encoder;
+#[cfg(target_os = "none")]
+mod exceptions;
 #[cfg(target_os = "none")]
 pub mod flash;
 #[cfg(target_os = "none")]

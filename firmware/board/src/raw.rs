@@ -1,4 +1,4 @@
-//! All `unsafe` code of the boards.
+//! All `unsafe` code of the boards, but for the entries of [`exceptions`](crate::exceptions).
 //!
 //! | what | why it is sound |
 //! |---|---|
@@ -11,18 +11,16 @@
 //! | [`dma_source`] | the stream reads a buffer that `link.rs` owns and keeps until the stream is done, in RAM that DMA reaches, within its length |
 //! | [`converter_channel`], [`injected_channel`] | a channel that the converter has, at most four times |
 //! | [`sleep`] | the assembly declares that the FPU's registers are lost |
-//! | `HardFault` | the stack may be unusable, so its pointer is reset; never returns |
 //! | [`stack`], [`fault_registers`] | words of the stack's RAM, and registers whose reading has no effect |
 #![allow(unsafe_code)]
 
-use crate::crash::{Kept, Ring, empty_ring};
+use crate::crash_record::{Kept, Ring, empty_ring};
 use crate::enable_line;
-use crate::link::DmaBuffer;
 use crate::reset_record;
-use crate::stop::{Ended, stop};
 use core::mem::MaybeUninit;
 use core::sync::atomic::AtomicU8;
 use cortex_m::peripheral::{MPU, SCB};
+use crepitus_protocol::frame::FrameBuffer;
 use stm32f4xx_hal::pac;
 
 /// The reset record, in a section that is neither cleared nor loaded.
@@ -137,7 +135,10 @@ pub(crate) fn dma_register(stream: &pac::dma2::ST, register: *const u16) {
 
 /// Sets the frame that a DMA stream sends. The caller must keep the returned
 /// buffer, and not access it, until the stream is done.
-pub(crate) fn dma_source(stream: &pac::dma2::ST, buffer: DmaBuffer) -> DmaBuffer {
+pub(crate) fn dma_source(
+    stream: &pac::dma2::ST,
+    buffer: &'static mut FrameBuffer,
+) -> &'static mut FrameBuffer {
     let begin = address(buffer.as_mut_ptr().expose_provenance());
     // SAFETY: see the table.
     unsafe { stream.m0ar().write(|w| w.bits(begin)) };
@@ -192,35 +193,8 @@ pub fn sleep() {
     }
 }
 
-/// Handler of processor faults, above all of a stack overflow.
-#[unsafe(naked)]
-#[unsafe(no_mangle)]
-#[allow(non_snake_case, reason = "the vector's name")]
-extern "C" fn HardFault() -> ! {
-    core::arch::naked_asm!(
-        "mrs r0, msp",
-        "movw r1, #:lower16:_stack_start",
-        "movt r1, #:upper16:_stack_start",
-        "msr msp, r1",
-        "b {fault}",
-        fault = sym fault,
-    )
-}
-
 /// The stack's RAM.
 const CCM: core::ops::Range<usize> = 0x1000_0000..0x1001_0000;
-
-extern "C" fn fault(frame: *const u32) -> ! {
-    outputs_off();
-    let address = u32::try_from(frame.addr()).unwrap_or_default();
-    stop(&Ended::by_fault(address))
-}
-
-#[cortex_m_rt::exception]
-unsafe fn DefaultHandler(number: i16) -> ! {
-    outputs_off();
-    stop(&Ended::unhandled(number.unsigned_abs()))
-}
 
 /// The stack's words from an address up; 0 where there is no stack.
 pub(crate) fn stack<const N: usize>(begin: u32) -> [u32; N] {

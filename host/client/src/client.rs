@@ -11,8 +11,7 @@ use crate::accounting::Accounting;
 use crate::errors::Error;
 use crate::event::Event;
 use crate::handshake::Handshake;
-use crate::management::Management;
-use crate::reconnect::Loss;
+use crate::loss::Loss;
 use crate::request_kind::RequestKind;
 use crate::round_trips::RoundTrips;
 use crate::session::Options;
@@ -153,7 +152,7 @@ impl<T: Transport> Client<T> {
     ///
     /// # Errors
     /// [`Error::Mismatch`] if comms has another schema hash: use
-    /// [`Management`] for such a device. [`Error::NoAnswer`],
+    /// [`Management`](crate::Management) for such a device. [`Error::NoAnswer`],
     /// [`Error::Transport`].
     pub fn connect(transport: T) -> Result<Self, Error> {
         Self::connect_with(transport, Options::default())
@@ -164,9 +163,9 @@ impl<T: Transport> Client<T> {
     /// # Errors
     /// As [`Self::connect`].
     pub fn connect_with(transport: T, options: Options) -> Result<Self, Error> {
-        let mut management = Management::with(transport, options);
-        let handshake = management.identify()?;
-        management.into_client(handshake)
+        let mut client = Self::unchecked(transport, options);
+        let handshake = client.identify()?;
+        client.checked(handshake)
     }
 
     /// A client before the handshake.

@@ -31,4 +31,4 @@ pub use clock::Clock;
 pub use connection::{Connection, is_in_this_process, is_port};
 pub use input::is_input;
 pub use open_error::OpenError;
-pub use simulated::Simulated;
+pub use simulated::{Simulated, emulated};

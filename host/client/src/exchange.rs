@@ -3,7 +3,7 @@
 use crate::client::{Client, Lease};
 use crate::errors::Error;
 use crate::event::Event;
-use crate::reconnect::Loss;
+use crate::loss::Loss;
 use crate::refusals::Refused;
 use crate::request_kind::RequestKind;
 use crate::transport::{Transport, TransportError};

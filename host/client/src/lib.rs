@@ -61,6 +61,7 @@ mod event;
 mod exchange;
 mod faults;
 mod handshake;
+mod loss;
 mod management;
 mod pump;
 mod reconnect;

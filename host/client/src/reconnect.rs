@@ -5,6 +5,7 @@ use crate::client::{Client, Lease};
 use crate::errors::Error;
 use crate::event::Event;
 use crate::handshake::Handshake;
+use crate::loss::Loss;
 use crate::request_kind::RequestKind;
 use crate::transport::Transport;
 use crepitus_protocol::host::{Answer, Operation, Status};
@@ -12,13 +13,6 @@ use std::time::Duration;
 
 /// Retry interval of opening the port.
 const TRY_EVERY: Duration = Duration::from_millis(50);
-
-/// State at the loss of the connection.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Loss {
-    pub(crate) was_armed: bool,
-    pub(crate) unanswered: Option<RequestKind>,
-}
 
 /// Result of a reconnect.
 #[derive(Clone, Copy, Debug, PartialEq)]

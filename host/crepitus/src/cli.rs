@@ -52,6 +52,25 @@ pub(crate) struct DeviceArguments {
     pub(crate) scene: Option<PathBuf>,
 }
 
+/// Whether to arm, for verbs that can do without.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub(crate) struct Arming {
+    /// Arm first, and disarm at the end.
+    #[arg(long)]
+    pub(crate) arm: bool,
+
+    /// Set the angle's zero before: hold the leg straight.
+    #[arg(long)]
+    pub(crate) zero: bool,
+}
+
+impl Arming {
+    /// Arm, and set the zero before or not.
+    pub(crate) fn armed(zero: bool) -> Self {
+        Self { arm: true, zero }
+    }
+}
+
 // Handling of what is in the way; shared by all verbs that write files. No doc comment: see above.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(crate) struct Force {

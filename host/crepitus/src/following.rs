@@ -4,11 +4,11 @@
 //! Ctrl-C, SIGTERM, SIGHUP and a panic disarm first. A lost connection is opened again, but the device is
 //! not armed again.
 
+use crate::cli::Arming;
 use crate::failure::Failure;
 use crate::interrupt;
 use crate::line::{Line, failure, failure_with};
 use crate::output::to_stderr;
-use clap::Args;
 use crepitus_client::connection::device_text;
 use crepitus_client::{Begin, Client, Error, Event};
 use crepitus_protocol::State;
@@ -50,25 +50,6 @@ pub(crate) trait Follower {
     /// Tells the user that something has happened.
     fn tell(&mut self, text: &str) {
         to_stderr(text);
-    }
-}
-
-/// Whether to arm, for verbs that can do without.
-#[derive(Args, Clone, Copy, Debug, Default)]
-pub(crate) struct Arming {
-    /// Arm first, and disarm at the end.
-    #[arg(long)]
-    pub(crate) arm: bool,
-
-    /// Set the angle's zero before: hold the leg straight.
-    #[arg(long)]
-    pub(crate) zero: bool,
-}
-
-impl Arming {
-    /// Arm, and set the zero before or not.
-    pub(crate) fn armed(zero: bool) -> Self {
-        Self { arm: true, zero }
     }
 }
 

@@ -1,8 +1,7 @@
 //! Connections: the device that the arguments name, and the failures of its requests.
 
-use crate::cli::DeviceArguments;
+use crate::cli::{Arming, DeviceArguments};
 use crate::failure::Failure;
-use crate::following::Arming;
 pub(crate) use crepitus_client::connection::Connection as Line;
 use crepitus_client::connection::{OpenError, is_in_this_process, is_input};
 use crepitus_client::sharing::Program;

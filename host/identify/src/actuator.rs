@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! volts, amperes ─> Series ─> spectrum ─> start ─> fit ─┬─> refused: why, and what to do
-//!                                                        └─> Actuator: values with intervals ─> chart
+//!                                                        └─> Actuator: values with intervals
 //! ```
 //!
 //! | to find | look in |
@@ -15,13 +15,11 @@
 //! | the equations | `impedance.rs`, `mass.rs` |
 //! | the fit and its intervals | `fit.rs`, `derived.rs` |
 //! | what is refused | [`Refusal`], `examined.rs` |
-//! | measured and fitted impedance as a picture | [`chart`] |
 //!
 //! Not visible in any current: a ring that moves as one with the shell. The mass then swings
 //! against both, and the resonance is that of m·M/(m + M). Hence the vice.
 
 mod bands;
-pub mod chart;
 mod derived;
 mod examined;
 mod fit;
@@ -37,7 +35,7 @@ mod start;
 mod synthetic;
 
 pub use mass::Weighed;
-pub use parameters::{Actuator, MassEvidence, identify};
+pub use parameters::{Actuator, ImpedancePoint, MassEvidence, identify};
 pub use refusal::Refusal;
 pub use series::{Current, Hold, Series, SeriesError};
 

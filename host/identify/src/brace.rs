@@ -8,7 +8,7 @@
 //! ```text
 //! Recording ─> swings ─> start ─> fit ─┬─> Refusal: what it shows instead, what to do
 //!  + Weight     whole?   guesses       └─> Brace: each Quantity with its interval,
-//!                                           or why it is not visible ─> chart, page, scene
+//!                                           or why it is not visible ─> scene
 //! ```
 //!
 //! | to find | look in |
@@ -34,12 +34,10 @@
 //! assert!(matches!(refused, Err(Refusal::Short { .. })));
 //! ```
 
-pub mod chart;
 mod fit;
 mod found;
 mod model;
 mod numbers;
-pub mod page;
 mod passing;
 mod plausible;
 mod prior;
@@ -49,13 +47,15 @@ mod recording;
 mod refusal;
 mod residuals;
 pub mod scene;
+mod shown;
 mod start;
 mod swing;
 mod visible;
 mod whole;
 
-pub use found::{Brace, Result as QuantityResult, Shown, identify};
+pub use found::{Brace, Trace, TracePoint, identify};
 pub use prior::TORQUE_DEVIATION;
 pub use quantity::Quantity;
 pub use recording::{GRAVITY, Measured, Recording, Sample, Weight};
 pub use refusal::Refusal;
+pub use shown::{Result as QuantityResult, Shown};

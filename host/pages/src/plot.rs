@@ -26,9 +26,11 @@
 #![allow(clippy::cast_precision_loss)]
 
 mod axis;
+mod curve_sample;
 mod curve_style;
 mod drawing;
 mod figure;
+mod frame;
 pub mod labels;
 mod layout;
 mod marker;
@@ -37,24 +39,29 @@ pub mod page;
 pub mod palette;
 mod panel;
 pub mod paper;
+mod path;
 mod pdf;
 mod picture;
 mod plot;
 mod simplify;
+mod stack;
 mod strip;
+mod stroke;
 pub mod text;
 mod thinned;
 
 pub use axis::{Axis, extent};
 pub use curve_style::CurveStyle;
-pub use drawing::{Anchor, Drawing, Stroke, Svg};
+pub use drawing::{Anchor, Drawing, Svg};
 pub use figure::{Chart, Figure, Key, Sign};
-pub use layout::Frame;
+pub use frame::Frame;
 pub use marker::Marker;
-pub use panel::{Panel, stack};
+pub use panel::Panel;
 pub use paper::{Column, Paper};
 pub use pdf::PdfError;
 pub use picture::{Picture, pictures};
 pub use plot::{Mark, Plot};
 pub use simplify::simplify;
+pub use stack::stack;
+pub use stroke::Stroke;
 pub use thinned::{Point, Thinned};

@@ -46,6 +46,7 @@ mod page;
 mod phases;
 mod plant;
 mod spectrum;
+mod symptom_chart;
 mod symptoms;
 mod text;
 mod window;

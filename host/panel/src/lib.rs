@@ -38,6 +38,7 @@ mod keeper;
 pub mod lesson;
 pub mod live;
 mod panel;
+mod panel_error;
 mod pending;
 mod replay;
 mod request;
@@ -52,4 +53,5 @@ mod tokens;
 mod watchdog;
 
 pub use keeper::Program;
-pub use panel::{Links, Panel, PanelError, Settings, Source};
+pub use panel::{Links, Panel, Settings, Source};
+pub use panel_error::PanelError;

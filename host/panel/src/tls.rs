@@ -1,6 +1,6 @@
 //! TLS for other computers of a network: a certificate of this run alone.
 
-use crate::panel::PanelError;
+use crate::panel_error::PanelError;
 use crate::pending::{Peer, Pending};
 use axum::Router;
 use axum_server::tls_rustls::{RustlsAcceptor, RustlsConfig};

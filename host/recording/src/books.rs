@@ -16,7 +16,7 @@ mod row_count;
 
 use crate::ending::Ending;
 use crepitus_protocol::telemetry::Block;
-pub(crate) use recount::Recount;
+pub use recount::Recount;
 #[cfg(feature = "parquet")]
 pub(crate) use row_count::RowCount;
 use serde::{Deserialize, Serialize};

@@ -19,9 +19,9 @@
 //! formats.
 #![forbid(unsafe_code)]
 
-mod analysis;
 mod arming;
 mod books;
+mod damage;
 mod ending;
 mod findings;
 mod log;
@@ -32,23 +32,21 @@ mod parameters;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod recording;
-mod report_columns;
 mod row;
 mod samples;
 mod shaft;
 
-pub use analysis::{Analysis, Derived, Object, RecordingSummary};
 pub use arming::ArmingPushes;
-pub use books::{Begin, Books, Cause, Gap, Segment, Totals};
+pub use books::{Begin, Books, Cause, Gap, Recount, Segment, Totals};
+pub use damage::Damage;
 pub use ending::{EndCause, Ending};
 pub use findings::Findings;
 pub use log::disk::{Background, Disk};
 pub use log::recorder::{RecordError, Recorder};
 pub use metadata::{Controller, Metadata};
 pub use parameters::{History, InForce, Named, ParameterSet, named_values};
-pub use recording::{Damage, Format, ReadError, Recording, Rows, seconds};
-pub use report_columns::ReportColumns;
-pub use row::{COLUMNS, Row, Step};
+pub use recording::{Format, ReadError, Recording, Rows};
+pub use row::{COLUMNS, Row, Step, seconds};
 pub use samples::Samples;
 
 use std::path::Path;

@@ -10,8 +10,8 @@
 //! Times are those of the recording's begin plus the time of the row.
 
 use crate::parameters::Named;
-use crate::recording::{ReadError, Recording, seconds};
-use crate::row::{Row, Step};
+use crate::recording::{ReadError, Recording};
+use crate::row::{Row, Step, seconds};
 use mcap::records::MessageHeader;
 use mcap::{McapError, WriteOptions, Writer};
 use serde_json::{Value, json};

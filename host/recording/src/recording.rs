@@ -1,6 +1,7 @@
 //! Reading of a recording, in whichever format it is.
 
 use crate::books::Books;
+use crate::damage::Damage;
 use crate::ending::Ending;
 use crate::findings::Findings;
 use crate::log::MAGIC;
@@ -10,7 +11,7 @@ use crate::metadata::{FORMAT, Metadata};
 use crate::parameters::{History, InForce};
 #[cfg(feature = "parquet")]
 use crate::parquet;
-use crate::row::Row;
+use crate::row::{Row, seconds};
 use crate::samples::Samples;
 use crepitus_files::input;
 use crepitus_protocol::TICK_S;
@@ -63,15 +64,6 @@ pub enum ReadError {
         /// Damage that was found in it.
         findings: Findings,
     },
-}
-
-/// Handling of damaged files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Damage {
-    /// Return an error.
-    Refuse,
-    /// Keep what is readable.
-    Salvage,
 }
 
 /// The format of a file.
@@ -323,12 +315,6 @@ impl Recording {
             source,
         }
     }
-}
-
-/// Duration of this number of ticks, s.
-#[expect(clippy::cast_precision_loss, reason = "centuries of ticks")]
-pub fn seconds(ticks: u64) -> f64 {
-    ticks as f64 * TICK_S
 }
 
 /// The samples of a recording.

@@ -1,6 +1,5 @@
 //! A sample as a line of CSV.
 
-use crate::recording::seconds;
 use crepitus_model::render::effects::Phases;
 use crepitus_protocol::TICK_S;
 use crepitus_protocol::telemetry::SampleFlags;
@@ -48,6 +47,12 @@ pub const COLUMNS: [(&str, &str); 14] = [
 /// End of all ticks and other counts of a recording: centuries. A file with larger ones is none of
 /// ours, however right its checksums are.
 pub(crate) const END_TICK: u64 = 1 << 48;
+
+/// Duration of this number of ticks, s.
+#[expect(clippy::cast_precision_loss, reason = "centuries of ticks")]
+pub fn seconds(ticks: u64) -> f64 {
+    ticks as f64 * TICK_S
+}
 
 /// A sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

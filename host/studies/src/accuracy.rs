@@ -33,6 +33,7 @@ pub mod reference_torque;
 pub mod report;
 pub mod results;
 pub mod scenes;
+pub mod steps;
 pub mod study;
 pub mod symptoms;
 pub mod target;

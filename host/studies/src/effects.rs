@@ -33,6 +33,7 @@ pub mod influence;
 pub mod refusal;
 pub mod report;
 pub mod results;
+pub mod row;
 mod smallest;
 pub mod study;
 pub mod tolerance;
@@ -41,7 +42,8 @@ mod window;
 
 pub use answer::Answer;
 pub use refusal::{Refusal, refusal};
-pub use results::{EffectsStudy, Row};
+pub use results::EffectsStudy;
+pub use row::Row;
 pub use study::{EffectsError, Plan, run};
 pub use tolerance::Tolerance;
 pub use window::{HandTorque, VariantTorque};

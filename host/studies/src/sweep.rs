@@ -24,12 +24,14 @@
 
 pub mod axis;
 pub mod design;
+pub mod kind;
 pub mod parts;
 pub mod plan;
 pub mod pool;
 pub mod row;
 mod running;
 pub mod store;
+mod store_error;
 pub mod table;
 mod traced;
 
@@ -39,6 +41,7 @@ pub use parts::{Parts, missing};
 pub use plan::{Identity, Plan, Shard};
 pub use pool::{Ended, Receiver, Stop, run_all, totals};
 pub use row::{Cell, Row};
-pub use store::{Opening, Store, StoreError};
+pub use store::{Opening, Store};
+pub use store_error::StoreError;
 pub use table::{Format, Table, TableError, Written};
 pub use traced::{Traces, traced};

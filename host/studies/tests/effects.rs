@@ -5,7 +5,7 @@ use crepitus_plant::effects::{EFFECTS, find};
 use crepitus_scene::run::{FELT_COLUMN, Observer, columns};
 use crepitus_scene::trace::{EventRecord, SymptomEvent};
 use crepitus_scene::{Overrides, Scene};
-use crepitus_studies::effects::results::Outcome;
+use crepitus_studies::effects::row::Outcome;
 use crepitus_studies::effects::variant::Change;
 use crepitus_studies::effects::{EffectsError, EffectsStudy, Plan, Refusal, run};
 use crepitus_studies::{Cancelled, Watcher};

@@ -36,7 +36,6 @@ use crate::mcu::{Mcu, Reset, Sampling, Watch};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
 use crepitus_device::drive::plausibility::TRIP_A;
-use crepitus_scene::Scene;
 use crepitus_virtual_device::leg::{CurrentPath, Leg, Terminals};
 use encoder_edges::Edges;
 use half_bridges::Quiet;
@@ -100,14 +99,14 @@ pub struct DriveBoard<C = NativeComms> {
 }
 
 impl<C: CommsSide> DriveBoard<C> {
-    /// The board with an image and a scene's leg, just switched on.
-    pub fn new(image: &Image, scene: &Scene, comms: C) -> Self {
+    /// The board with an image and a leg, just switched on.
+    pub fn new(image: &Image, leg: Leg, comms: C) -> Self {
         let mut mcu = Stm32f405::new(image);
         mcu.drive_pin(BREAK, true);
         mcu.drive_pin(COIL_FAULT, true);
         Self {
             mcu,
-            leg: Leg::new(scene),
+            leg,
             comms,
             faults: Faults::default(),
             edges: Edges::default(),

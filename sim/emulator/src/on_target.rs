@@ -3,7 +3,8 @@
 
 use crepitus_ladder::exchange::Input;
 use crepitus_ladder::{Call, Plan};
-use crepitus_scene::Scene;
+use crepitus_protocol::Values;
+use crepitus_virtual_device::Leg;
 use crepitus_virtual_device::usb::cabled::CabledDevice;
 
 /// Runs the steps of a plan, compares every output with the host's, and returns
@@ -52,14 +53,18 @@ pub fn ladder(on_build: impl FnOnce()) -> Result<OnTarget, NoTarget> {
     }))
 }
 
-/// Both images with a scene's leg and parameters, plugged in and running for as
+/// Both images with a leg and parameters, plugged in and running for as
 /// long as it takes the drive to get its parameters; `on_build` is called if they
 /// have to be built first.
 ///
 /// # Errors
 /// [`NoTarget`].
 #[cfg(feature = "core")]
-pub fn device(scene: &Scene, on_build: impl FnOnce()) -> Result<Box<dyn CabledDevice>, NoTarget> {
+pub fn device(
+    leg: Leg,
+    values: &Values,
+    on_build: impl FnOnce(),
+) -> Result<Box<dyn CabledDevice>, NoTarget> {
     use crate::Pair;
     use crate::firmware::{self, Program};
     if firmware::is_to_be_built() {
@@ -67,8 +72,7 @@ pub fn device(scene: &Scene, on_build: impl FnOnce()) -> Result<Box<dyn CabledDe
     }
     let image = |program| firmware::image(program).map_err(|e| NoTarget::NoImage(e.to_string()));
     let (drive, comms) = (image(Program::Drive)?, image(Program::Comms)?);
-    let pair = Pair::of(&drive, &comms, scene);
-    let mut pair = pair.map_err(|error| NoTarget::NoDevice(error.to_string()))?;
+    let mut pair = Pair::of(&drive, &comms, leg, values);
     let plugged = pair.plug_in();
     plugged.map_err(|error| NoTarget::NoDevice(error.to_string()))?;
     for _ in 0..PREPARED_TICKS {
@@ -91,6 +95,6 @@ pub fn ladder(_: impl FnOnce()) -> Result<OnTarget, NoTarget> {
 /// # Errors
 /// Always [`NoTarget::NoCore`].
 #[cfg(not(feature = "core"))]
-pub fn device(_: &Scene, _: impl FnOnce()) -> Result<Box<dyn CabledDevice>, NoTarget> {
+pub fn device(_: Leg, _: &Values, _: impl FnOnce()) -> Result<Box<dyn CabledDevice>, NoTarget> {
     Err(NoTarget::NoCore)
 }

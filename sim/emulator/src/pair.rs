@@ -15,8 +15,7 @@ use crate::mcu::{Mcu, Reset};
 use crate::state_hash::Hash;
 use crepitus_device::parameter_log::{ParameterLog, Sectors as _};
 use crepitus_protocol::{Revision, Values};
-use crepitus_scene::Scene;
-use crepitus_scene::values::{NotRendered, values};
+use crepitus_virtual_device::Leg;
 use crepitus_virtual_device::nor_flash::NorFlash;
 use crepitus_virtual_device::usb::cabled::CabledDevice;
 use crepitus_virtual_device::usb::enumeration::EnumerationError;
@@ -62,22 +61,18 @@ pub struct Pair {
 impl Pair {
     /// Both just switched on, not plugged in. Flash is as from the factory: comms
     /// begins by preparing it, which takes 0.8 s.
-    pub fn new(drive: &Image, comms: &Image, scene: &Scene) -> Self {
+    pub fn new(drive: &Image, comms: &Image, leg: Leg) -> Self {
         Self {
-            boards: DriveBoard::new(drive, scene, CommsBoard::new(comms)),
+            boards: DriveBoard::new(drive, leg, CommsBoard::new(comms)),
             host: None,
             ticks: 0,
             earlier: Traffic::default(),
         }
     }
 
-    /// [`Self::new`] with the scene's parameters stored.
-    ///
-    /// # Errors
-    /// [`NotRendered`] if no device can render the scene.
-    pub fn of(drive: &Image, comms: &Image, scene: &Scene) -> Result<Self, NotRendered> {
-        let comms = with_parameters(comms, &values(scene)?);
-        Ok(Self::new(drive, &comms, scene))
+    /// [`Self::new`] with these parameters stored.
+    pub fn of(drive: &Image, comms: &Image, leg: Leg, values: &Values) -> Self {
+        Self::new(drive, &with_parameters(comms, values), leg)
     }
 
     /// Plugs the cable in, and enumerates the device.

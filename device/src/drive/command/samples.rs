@@ -3,7 +3,7 @@
 use crate::counters::Counters;
 use crate::drive::command::Command;
 use crate::drive::exchange::Rendered;
-use crepitus_model::Real;
+use crate::drive::milliamperes::milliamperes;
 use crepitus_model::control::current_loop::Limit;
 use crepitus_protocol::LimitReason;
 use crepitus_protocol::counters::DriveCounter;
@@ -57,18 +57,4 @@ impl Command {
                 .with(SampleFlags::CHIRP, self.has_chirped),
         }
     }
-}
-
-/// Rounds and clamps to the range of i16, never [`NO_CURRENT`].
-pub(in crate::drive) fn milliamperes(current_a: f32) -> i16 {
-    let most = f32::from(i16::MAX);
-    let scaled = current_a * 1e3;
-    let rounded = (scaled + 0.5_f32.copysign(scaled)).within(most);
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "a cast from float saturates"
-    )]
-    // To 32 bits it is one instruction.
-    let milliamperes = rounded as i32;
-    i16::try_from(milliamperes).unwrap_or(0)
 }

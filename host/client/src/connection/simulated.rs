@@ -6,8 +6,9 @@ use crate::{Transport, TransportError};
 use crepitus_emulator::on_target::{self, NoTarget};
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_scene::Scene;
+use crepitus_scene::values::values;
 use crepitus_virtual_device::usb::cabled::CabledDevice;
-use crepitus_virtual_device::{Start, VirtualDevice};
+use crepitus_virtual_device::{Leg, Start, VirtualDevice};
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -33,6 +34,16 @@ struct Pace {
 /// Poll interval of a tick that is not due yet.
 const NAP: Duration = Duration::from_micros(500);
 
+/// The firmware's own images with the leg and the parameters of a scene; `on_build` is called if they have to be
+/// built first.
+///
+/// # Errors
+/// [`NoTarget`] without the emulator or the images, or if no device can render the scene.
+pub fn emulated(scene: &Scene, on_build: impl FnOnce()) -> Result<Box<dyn CabledDevice>, NoTarget> {
+    let values = values(scene).map_err(|error| NoTarget::NoDevice(error.to_string()))?;
+    on_target::device(Leg::new(scene), &values, on_build)
+}
+
 impl Simulated {
     /// Creates the simulated device of a scene.
     ///
@@ -49,7 +60,8 @@ impl Simulated {
     /// [`NoTarget`] without the emulator or the images.
     pub fn emulated(scene: &Scene) -> Result<Self, NoTarget> {
         let on_build = || eprintln!("building firmware, if it is not up to date");
-        Ok(Self::cabled(on_target::device(scene, on_build)?).named("an emulated device"))
+        let device = emulated(scene, on_build)?;
+        Ok(Self::cabled(device).named("an emulated device"))
     }
 
     /// Wraps a device at the end of a virtual cable, such as one with injected faults.

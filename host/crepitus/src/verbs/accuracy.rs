@@ -149,8 +149,9 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             precisions: &studied.plan.precisions,
             repeats: studied.plan.repeats,
         };
-        accuracy::symptoms::add(&mut study, &plan, &mut Watch::new()).map_err(studying::failed)?;
-        accuracy::actuator::add(&mut study, plan.repeats, &mut Watch::new())
+        study.symptoms =
+            accuracy::symptoms::points(&plan, &mut Watch::new()).map_err(studying::failed)?;
+        study.actuator = accuracy::actuator::points(plan.repeats, &mut Watch::new())
             .map_err(studying::failed)?;
     }
     let by_motion = if is_whole {

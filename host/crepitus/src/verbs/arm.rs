@@ -1,9 +1,9 @@
 //! `crepitus arm`.
 
-use crate::cli::{DeviceArguments, duration};
+use crate::cli::{Arming, DeviceArguments, duration};
 use crate::device_command::print_done;
 use crate::failure::Failure;
-use crate::following::{Arming, End, Follower, follow};
+use crate::following::{End, Follower, follow};
 use crate::interrupt;
 use crate::keys::Keys;
 use crate::line::{Line, connect_to_arm};

@@ -1,5 +1,6 @@
 //! `crepitus calibrate`: the steps that a new brace needs before it is used: zero, range, polarity, friction, torque constant.
 
+mod change;
 mod connected;
 mod finding;
 mod friction;
@@ -142,7 +143,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         show(&finding, as_json)?;
         findings.push(finding);
     }
-    let changes = results::changes(&findings)?;
+    let changes = change::changes(&findings)?;
     let is_any = |verdict| {
         findings
             .iter()
@@ -180,7 +181,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 }
 
 /// One commit of all, saved.
-fn applied(client: &mut Client<Line>, changes: &[results::Change]) -> Result<u32, Failure> {
+fn applied(client: &mut Client<Line>, changes: &[change::Change]) -> Result<u32, Failure> {
     let changes: Vec<(u8, f64)> = changes
         .iter()
         .map(|change| (change.parameter.id, change.value))

@@ -2,9 +2,9 @@
 //! the simulated leg.
 
 use super::report;
-use crate::cli::Force;
+use crate::cli::{Arming, Force};
 use crate::failure::{Failure, print, print_json};
-use crate::following::{Arming, End, Follower, follow};
+use crate::following::{End, Follower, follow};
 use crate::interrupt;
 use crate::line::{Line, failure};
 use crate::overlay::Overlay;
@@ -19,10 +19,11 @@ use crepitus_client::connection::Simulated;
 use crepitus_client::{Begin, Client, RequestKind};
 use crepitus_files::json_path;
 use crepitus_files::output::Inputs;
+use crepitus_pages::recorded::RecordingSummary;
 use crepitus_protocol::parameters;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State};
-use crepitus_recording::{Damage, EndCause, Ending, Recording, RecordingSummary};
+use crepitus_recording::{Damage, EndCause, Ending, Recording};
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, preset};
 use serde_json::json;

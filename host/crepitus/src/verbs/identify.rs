@@ -1,6 +1,8 @@
 //! `crepitus identify`: friction, inertia, backlash and cuffs of the brace from recordings of a
 //! weight that swings in it.
 
+mod chart;
+mod page;
 pub(crate) mod recordings;
 mod results;
 mod table;

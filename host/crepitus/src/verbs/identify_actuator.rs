@@ -1,6 +1,7 @@
 //! `crepitus identify-actuator`: parameters of the vibration actuator from its coil's
 //! voltage and current.
 
+mod chart;
 mod chirp;
 mod evidence;
 mod played;

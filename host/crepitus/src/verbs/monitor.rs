@@ -4,9 +4,9 @@ mod keys;
 mod screen;
 mod view;
 
-use crate::cli::{DeviceArguments, duration};
+use crate::cli::{Arming, DeviceArguments, duration};
 use crate::failure::{Failure, print, print_json};
-use crate::following::{Arming, Follower, follow};
+use crate::following::{Follower, follow};
 use crate::interrupt;
 use crate::line::{Line, failure, failure_with, holder, named, open_to_arm};
 use clap::Args;

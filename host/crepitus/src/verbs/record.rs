@@ -1,8 +1,8 @@
 //! `crepitus record`: every sample to a file.
 
-use crate::cli::{DeviceArguments, duration};
+use crate::cli::{Arming, DeviceArguments, duration};
 use crate::failure::{Failure, print, print_json};
-use crate::following::{Arming, End, follow};
+use crate::following::{End, follow};
 use crate::interrupt;
 use crate::line::{Line, connect_to_arm};
 use crate::recorded::{Recorded, Shortfall, UNDER_WAY_TICKS, print_ended, report_command};

@@ -15,12 +15,10 @@ use crate::sections::{counts, torque_levels};
 use crate::wav::Wav;
 use clap::Args;
 use crepitus_files::output::{Folder, Inputs};
+use crepitus_pages::recorded::{Analysis, RecordingSummary, ReportColumns};
 use crepitus_pages::report::{Collector, Mark, Setup, Text, TorqueLevels};
 use crepitus_protocol::TICK_S;
-use crepitus_recording::{
-    Analysis, ArmingPushes, Books, Damage, History, Recording, RecordingSummary, ReportColumns,
-    Row, Step, seconds,
-};
+use crepitus_recording::{ArmingPushes, Books, Damage, History, Recording, Row, Step, seconds};
 use std::path::{Path, PathBuf};
 
 /// Rows between two updates of the progress.

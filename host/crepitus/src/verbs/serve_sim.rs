@@ -7,7 +7,7 @@ mod usbip;
 use crate::failure::Failure;
 use crate::output::to_stderr;
 use clap::{Args, ValueEnum};
-use crepitus_emulator::on_target;
+use crepitus_client::connection::emulated;
 use crepitus_scene::Overrides;
 use crepitus_scene::shipped;
 use crepitus_virtual_device::usb::cabled::CabledDevice;
@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         }
         Kind::Emulated => {
             let on_build = || to_stderr("building firmware, if it is not up to date");
-            on_target::device(&scene, on_build).map_err(Failure::input)?
+            emulated(&scene, on_build).map_err(Failure::input)?
         }
     };
     match arguments.usbip {

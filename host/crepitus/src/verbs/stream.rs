@@ -1,8 +1,8 @@
 //! `crepitus stream`: samples to stdout as they arrive.
 
-use crate::cli::{DeviceArguments, duration};
+use crate::cli::{Arming, DeviceArguments, duration};
 use crate::failure::{Failure, print};
-use crate::following::{Arming, Follower, follow};
+use crate::following::{Follower, follow};
 use crate::interrupt;
 use crate::line::{Line, connect_to_arm, failure};
 use crate::status_line::StatusLine;

@@ -11,17 +11,11 @@
 //! impedance, and σ²·(JᵀJ)⁻¹ is the covariance of its numbers.
 
 use crate::actuator::bands::{Mean, bands};
-use crate::actuator::impedance::{Impedance, NUMBERS};
+use crate::actuator::impedance::{Column, Impedance, NUMBERS, Square};
 use crate::actuator::second::second;
 use crate::actuator::spectrum::{Line, Spectrum};
 use crate::actuator::start::start;
 use crepitus_plant::spectrum::Complex;
-use nalgebra::{SMatrix, SVector};
-
-/// Square matrix over the parameters.
-pub(crate) type Square = SMatrix<f64, NUMBERS, NUMBERS>;
-/// Column vector over the parameters.
-pub(crate) type Column = SVector<f64, NUMBERS>;
 
 /// Most iterations; about ten are usual.
 const MOST_STEPS: u32 = 100;

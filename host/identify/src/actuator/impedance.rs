@@ -8,11 +8,16 @@
 //!
 //! and the current lags by a time τ, which is that of the measurement.
 
-use crate::actuator::fit::Column;
 use crepitus_plant::spectrum::Complex;
+use nalgebra::{SMatrix, SVector};
 
 /// Number of parameters, in this order: R (Ω), L (H), b (Ω/s), ω₀ (rad/s), γ (1/s), τ (s).
 pub(crate) const NUMBERS: usize = 6;
+
+/// Square matrix over the parameters.
+pub(crate) type Square = SMatrix<f64, NUMBERS, NUMBERS>;
+/// Column vector over the parameters.
+pub(crate) type Column = SVector<f64, NUMBERS>;
 
 /// Parameters of the impedance.
 #[derive(Clone, Copy, Debug, PartialEq)]

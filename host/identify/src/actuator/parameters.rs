@@ -10,6 +10,7 @@ use crate::actuator::refusal::Refusal;
 use crate::actuator::{Band, Series};
 use crate::estimate::Estimate;
 use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
+use crepitus_plant::spectrum::Complex;
 use std::f64::consts::TAU;
 
 /// Standard gravity, m/s².
@@ -90,6 +91,35 @@ pub struct Actuator {
     pub(crate) impedance: Impedance,
     pub(crate) means: Vec<Mean>,
     pub(crate) misfits: Vec<(f64, f64)>,
+}
+
+/// Impedance of the coil at a frequency.
+#[derive(Clone, Copy, Debug)]
+pub struct ImpedancePoint {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Measured, mean over a 24th of an octave, Ω.
+    pub measured_ohm: Complex<f64>,
+    /// Fitted, Ω, with the delay of the measurement in it.
+    pub fitted_ohm: Complex<f64>,
+}
+
+impl Actuator {
+    /// Returns the measured and the fitted impedance over the band.
+    pub fn impedance_points(&self) -> impl Iterator<Item = ImpedancePoint> {
+        self.means.iter().map(|mean| ImpedancePoint {
+            frequency_hz: mean.omega / TAU,
+            measured_ohm: mean.impedance,
+            fitted_ohm: 1.0 / self.impedance.admittance(mean.omega).0,
+        })
+    }
+
+    /// Returns the frequency, Hz, and what the fit leaves there, as a share.
+    pub fn misfits(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.misfits
+            .iter()
+            .map(|(omega, share)| (omega / TAU, *share))
+    }
 }
 
 /// Identifies an actuator from a chirp.

@@ -16,8 +16,7 @@
 //! single column, with what the first resonance can take over projected away, is a
 //! closed form: no second fit is needed to see one.
 
-use crate::actuator::fit::{Column, Square};
-use crate::actuator::impedance::{Impedance, NUMBERS};
+use crate::actuator::impedance::{Column, Impedance, NUMBERS, Square};
 use crate::actuator::spectrum::Line;
 use crepitus_plant::spectrum::Complex;
 use std::f64::consts::TAU;

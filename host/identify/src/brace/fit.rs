@@ -26,7 +26,7 @@ use crate::brace::model::STEP_S;
 use crate::brace::numbers::{NUMBERS, place};
 use crate::brace::prior::Prior;
 use crate::brace::problem::Problem;
-use crate::brace::residuals::{effective_deviation, rms};
+use crate::brace::residuals::{LEAST_DEVIATION, effective_deviation, rms};
 use crate::brace::swing::Swing;
 use nalgebra::{DMatrix, DVector};
 
@@ -74,9 +74,8 @@ const AROUND: [[(usize, f64); 3]; 5] = [
 /// leave 10 µrad.
 pub(crate) const GOOD_ENOUGH: f64 = 2e-5;
 
-/// Initial standard deviation of an angle, rad, and the least one, that of a count.
+/// Initial standard deviation of an angle, rad.
 const FIRST_DEVIATION: f64 = 2e-3;
-pub(crate) const LEAST_DEVIATION: f64 = 1e-4;
 
 /// Fitted parameters with covariance and residuals.
 #[derive(Clone, Debug)]

@@ -4,33 +4,13 @@ use crate::Estimate;
 use crate::brace::fit::{Fit, GOOD_ENOUGH};
 use crate::brace::passing::Passing;
 use crate::brace::prior::Prior;
+use crate::brace::problem::{RESIDUAL_S, STRIDE};
 use crate::brace::quantity::Quantity;
 use crate::brace::recording::{Recording, Weight};
 use crate::brace::refusal::Refusal;
+use crate::brace::shown::{Result, Shown};
 use crate::brace::swing::{Swing, swings};
 use crate::brace::{plausible, visible};
-
-/// Identification result of a quantity.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Result {
-    /// Value in the unit of the quantity's [spec](Quantity::spec), with its 95 % confidence
-    /// interval.
-    Seen(Estimate),
-    /// Not identifiable from these recordings.
-    NotVisible {
-        /// Reason, and what to record to see it.
-        why: String,
-    },
-}
-
-/// A quantity with its identification result.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
-    /// The quantity.
-    pub quantity: Quantity,
-    /// Its value, or why it is not visible.
-    pub result: Result,
-}
 
 /// Identified brace: values, quality of the fit, warnings.
 #[derive(Clone, Debug)]
@@ -65,6 +45,47 @@ impl Brace {
             steps as f64 * crate::brace::model::STEP_S,
         )
     }
+
+    /// Returns each swing as it was measured, and what the fit leaves of it.
+    pub fn traces(&self) -> impl Iterator<Item = Trace> {
+        let residuals = self.fit.residuals.iter();
+        self.swings.iter().zip(residuals).map(|(swing, residuals)| {
+            let hangs = self.fit.hangs_rad.get(swing.recording);
+            let hang = hangs.copied().unwrap_or(0.0);
+            let measured_rad = swing.angles_rad.iter().step_by(STRIDE);
+            let points = (measured_rad.zip(residuals).enumerate())
+                .filter(|(_, (_, residual))| !residual.is_nan())
+                .map(|(i, (angle, residual))| TracePoint {
+                    time_s: swing.begins_s + i as f64 * RESIDUAL_S,
+                    measured_rad: angle - hang,
+                    residual_rad: *residual,
+                });
+            Trace {
+                recording: swing.recording,
+                points: points.collect(),
+            }
+        })
+    }
+}
+
+/// One swing, measured and fitted.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    /// Place of its recording, from 0.
+    pub recording: usize,
+    /// Its points over time.
+    pub points: Vec<TracePoint>,
+}
+
+/// Angle of the motor's shaft from where the weight hangs.
+#[derive(Clone, Copy, Debug)]
+pub struct TracePoint {
+    /// Time in the recording, s.
+    pub time_s: f64,
+    /// Measured by the encoder, rad.
+    pub measured_rad: f64,
+    /// Measured minus simulated, rad.
+    pub residual_rad: f64,
 }
 
 /// Identifies a brace from recordings of one weight that swings in it. `torque_deviation` is the

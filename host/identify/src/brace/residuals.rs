@@ -1,6 +1,7 @@
 //! Effective standard deviation of correlated residuals.
 
-use crate::brace::fit::LEAST_DEVIATION;
+/// Least standard deviation of an angle, rad: that of a count.
+pub(crate) const LEAST_DEVIATION: f64 = 1e-4;
 
 pub(crate) fn rms(residuals: &[Vec<f64>]) -> f64 {
     let all = residuals.iter().flatten().filter(|r| !r.is_nan());

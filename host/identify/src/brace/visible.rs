@@ -3,11 +3,11 @@
 
 use crate::Estimate;
 use crate::brace::fit::Fit;
-use crate::brace::found::Result;
 use crate::brace::numbers::place;
 use crate::brace::prior::Prior;
 use crate::brace::quantity::Quantity;
 use crate::brace::recording::Recording;
+use crate::brace::shown::Result;
 use crate::brace::swing::Swing;
 use crate::estimate::DEVIATIONS;
 

@@ -1,11 +1,9 @@
 //! Style of a curve: drawn by colour, dashes and signs together, so that it is
 //! distinguishable for the colour-blind and in grey print.
 
-use maud::{Markup, PreEscaped, html};
-
-use crate::plot::drawing::{Drawing, Stroke};
 use crate::plot::marker::Marker;
 use crate::plot::palette::{CURVES, Ink, TEXT};
+use crate::plot::stroke::Stroke;
 
 /// The dashes of lines, CSS pixels; none is a full line.
 const DASHES: [&str; 5] = ["", "6.5 3.5", "1.75 2.75", "7.5 2.5 1.75 2.5", "13 4"];
@@ -45,25 +43,6 @@ impl CurveStyle {
             ink: self.ink,
             width: 1.75,
             dashes: self.dashes,
-        }
-    }
-
-    /// Sample for legends: a stretch of the curve, or its sign, filled.
-    pub(crate) fn sample(self, filled: bool) -> String {
-        let mut drawing = Drawing::default();
-        if !filled {
-            drawing.line(&[(2.0, 8.0), (42.0, 8.0)], self.stroke());
-        }
-        drawing.marker((22.0, 8.0), self, filled, "");
-        drawing.finish()
-    }
-
-    /// The same as an element between words.
-    pub fn inline(self, filled: bool) -> Markup {
-        html! {
-            svg.sample width="44" height="16" viewBox="0 0 44 16" stroke-linejoin="round" aria-hidden="true" {
-                (PreEscaped(self.sample(filled)))
-            }
         }
     }
 }

@@ -1,11 +1,12 @@
 //! SVG elements in CSS pixels, the last on top.
 
-use std::fmt::Write as _;
-
 use maud::{Markup, PreEscaped, Render, html};
 
 use crate::plot::curve_style::CurveStyle;
+use crate::plot::marker::Marker;
 use crate::plot::palette::{Ink, PAPER, TEXT};
+use crate::plot::path::path;
+use crate::plot::stroke::Stroke;
 use crate::plot::text::SIZE;
 
 /// Size of labels beside curves, CSS pixels.
@@ -28,43 +29,6 @@ impl Anchor {
             Self::Start => None,
             Self::Middle => Some("middle"),
             Self::End => Some("end"),
-        }
-    }
-}
-
-/// Style of a line.
-#[derive(Clone, Copy, Debug)]
-pub struct Stroke {
-    /// Its colour.
-    pub ink: Ink,
-    /// CSS pixels.
-    pub width: f64,
-    /// Lengths of dashes and gaps, CSS pixels; empty for a full line.
-    pub dashes: &'static str,
-}
-
-impl Stroke {
-    /// The dotted line of a moment.
-    pub(crate) const MOMENT: Self = Self {
-        ink: TEXT,
-        width: 1.0,
-        dashes: "2 3",
-    };
-
-    /// A full line.
-    pub fn new(ink: Ink, width: f64) -> Self {
-        Self {
-            ink,
-            width,
-            dashes: "",
-        }
-    }
-
-    /// A dashed line.
-    pub fn dashed(ink: Ink, width: f64) -> Self {
-        Self {
-            dashes: "6 4",
-            ..Self::new(ink, width)
         }
     }
 }
@@ -178,7 +142,7 @@ impl Drawing {
     }
 
     /// A filled sign with a rim of paper, so that it stands out from a line.
-    pub fn sign(&mut self, at: (f64, f64), marker: crate::plot::Marker, ink: Ink) {
+    pub fn sign(&mut self, at: (f64, f64), marker: Marker, ink: Ink) {
         self.push(&html! {
             path d=(marker.path(at)) fill=(ink) stroke=(PAPER) stroke-width="3" paint-order="stroke" {}
         });
@@ -231,55 +195,9 @@ pub(crate) fn px(x: f64) -> f64 {
     (x * 100.0).round() / 100.0 + 0.0
 }
 
-/// A path through points, to a tenth of a pixel, relative after the first.
-pub(crate) fn path(points: &[(f64, f64)]) -> String {
-    let mut path = String::new();
-    let mut last = (0, 0);
-    for (i, (x, y)) in points.iter().enumerate() {
-        // Far less than 2^53, and saturating.
-        #[allow(clippy::cast_possible_truncation)]
-        let at = ((x * 10.0).round() as i64, (y * 10.0).round() as i64);
-        let command = match i {
-            0 => "M",
-            1 => "l",
-            _ => " ",
-        };
-        path.push_str(command);
-        tenths(&mut path, at.0 - last.0);
-        path.push(' ');
-        tenths(&mut path, at.1 - last.1);
-        last = at;
-    }
-    path
-}
-
-fn tenths(out: &mut String, tenths: i64) {
-    let sign = if tenths < 0 { "-" } else { "" };
-    let (whole, rest) = (tenths.unsigned_abs() / 10, tenths.unsigned_abs() % 10);
-    // Writing to a String cannot fail.
-    let _ = match (whole, rest) {
-        (_, 0) => write!(out, "{sign}{whole}"),
-        (0, _) => write!(out, "{sign}.{rest}"),
-        _ => write!(out, "{sign}{whole}.{rest}"),
-    };
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_path_is_relative_and_does_not_drift() {
-        let points: Vec<(f64, f64)> = (0..1000).map(|i| (0.333 * f64::from(i), -1.0)).collect();
-        let path = path(&points);
-        assert!(path.starts_with("M0 -1l.3 0 .4 0 .3 0"), "{path}");
-        let sum: f64 = path[6..]
-            .split(' ')
-            .step_by(2)
-            .map(|dx| dx.parse::<f64>().unwrap())
-            .sum();
-        assert!((sum - 332.7).abs() < 0.06, "{sum}");
-    }
 
     #[test]
     fn words_are_escaped_and_coordinates_short() {

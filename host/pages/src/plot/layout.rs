@@ -1,22 +1,10 @@
 //! Room that the axes of charts need at their edges, so that no label is
 //! cut.
 
+use crate::plot::frame::Frame;
 use crate::plot::panel::Panel;
 use crate::plot::strip::Strip;
 use crate::plot::text::{LINE, SIZE, lines, width};
-
-/// The inside of a pair of axes, CSS pixels of the whole chart.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
-    /// Left edge, at which x begins.
-    pub left: f64,
-    /// Top edge, at which y ends.
-    pub top: f64,
-    /// Right edge, at which x ends.
-    pub right: f64,
-    /// Bottom edge, at which y begins.
-    pub bottom: f64,
-}
 
 /// Length of a tick.
 pub(crate) const TICK: f64 = 4.0;

@@ -1,6 +1,6 @@
 //! The signs on curves. All are outlines, so that all can be hollow or filled.
 
-use crate::plot::drawing::path;
+use crate::plot::path::path;
 
 /// See the module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

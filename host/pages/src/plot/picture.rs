@@ -2,10 +2,11 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use crate::plot::drawing::{Anchor, Drawing, Stroke, Svg, px};
+use crate::plot::drawing::{Anchor, Drawing, Svg, px};
 use crate::plot::figure::{Figure, Key, Sign};
 use crate::plot::palette::{AXIS, Ink, PAPER, TEXT, picture_style, printed};
 use crate::plot::paper::{MARGIN, print_mm};
+use crate::plot::stroke::Stroke;
 use crate::plot::text::{SIZE, width};
 
 /// One chart as a file.

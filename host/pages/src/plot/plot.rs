@@ -1,11 +1,12 @@
 //! Drawing between a pair of axes, in the units of the data.
 
 use crate::plot::axis::Axis;
-use crate::plot::drawing::{Drawing, Stroke};
-use crate::plot::layout::Frame;
+use crate::plot::drawing::Drawing;
+use crate::plot::frame::Frame;
 use crate::plot::marker::Marker;
 use crate::plot::palette::{GRID, Ink, LEVEL, PAPER, TEXT};
 use crate::plot::simplify::simplify;
+use crate::plot::stroke::Stroke;
 use crate::plot::thinned::Point;
 
 /// Least width of a stretch that must be seen, CSS pixels.

@@ -1,10 +1,11 @@
 //! The strip above a pair of axes with the names of moments, so that none lies on a curve.
 
 use crate::plot::axis::Axis;
-use crate::plot::drawing::{Anchor, Drawing, Stroke};
-use crate::plot::layout::Frame;
+use crate::plot::drawing::{Anchor, Drawing};
+use crate::plot::frame::Frame;
 use crate::plot::palette::TEXT;
 use crate::plot::plot::Mark;
+use crate::plot::stroke::Stroke;
 use crate::plot::text::LINE;
 
 /// Rows of a strip; names that find no room in them are left out.

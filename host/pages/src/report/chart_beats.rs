@@ -4,7 +4,7 @@ use crate::plot::palette::{AXIS, TEXT};
 use crate::plot::{
     Axis, Chart, CurveStyle, Figure, Key, Marker, Panel, Paper, Plot, Point, Sign, stack,
 };
-use crate::report::chart_symptoms::{WIDE, WIDTH};
+use crate::report::symptom_chart::{WIDE, WIDTH};
 use crate::report::symptoms::Symptom;
 use crate::report::symptoms::found::Beat;
 use crepitus_model::render::effects::clonus::ClonusSettings;

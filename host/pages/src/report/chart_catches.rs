@@ -4,7 +4,7 @@ use crate::plot::palette::{AXIS, TEXT};
 use crate::plot::{
     Axis, Chart, CurveStyle, Figure, Key, Mark, Marker, Panel, Paper, Point, Sign, stack,
 };
-use crate::report::chart_symptoms::{WIDE, WIDTH};
+use crate::report::symptom_chart::{WIDE, WIDTH};
 use crate::report::symptoms::Symptom;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 

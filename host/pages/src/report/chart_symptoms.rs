@@ -12,6 +12,7 @@ use crate::report::chart_catches;
 use crate::report::chart_motion::degrees;
 use crate::report::collector::Figures;
 use crate::report::hysteresis::Range;
+use crate::report::symptom_chart::WIDTH;
 use crate::report::symptoms::limits::{self, Drawn};
 use crate::report::symptoms::path::Path;
 use crate::report::symptoms::timeline::Timeline;
@@ -19,9 +20,6 @@ use crate::report::symptoms::{Symptom, Symptoms, Together};
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_scene::trace::{SymptomEvent, Word};
 
-pub(crate) const WIDTH: f64 = 960.0;
-/// Width of lines behind others, which may cover them.
-pub(crate) const WIDE: f64 = 5.5;
 const HEIGHT: f64 = 380.0;
 const ANGLE_HEIGHT: f64 = 120.0;
 const TIME_HEIGHT: f64 = 290.0;

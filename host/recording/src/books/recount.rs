@@ -4,7 +4,7 @@ use super::{Books, Cause, Gap, LISTED_GAPS, Segment};
 
 /// Counts rows and gaps in the ticks alone, to compare them with the books.
 #[derive(Clone, Debug)]
-pub(crate) struct Recount<'b> {
+pub struct Recount<'b> {
     books: &'b Books,
     rows: u64,
     next_tick: u64,
@@ -17,7 +17,8 @@ pub(crate) struct Recount<'b> {
 }
 
 impl<'b> Recount<'b> {
-    pub(crate) fn new(books: &'b Books) -> Self {
+    /// Begins before the first row.
+    pub fn new(books: &'b Books) -> Self {
         Self {
             books,
             rows: 0,
@@ -31,7 +32,7 @@ impl<'b> Recount<'b> {
     }
 
     /// Takes the next row's tick.
-    pub(crate) fn row(&mut self, tick: u64) {
+    pub fn row(&mut self, tick: u64) {
         while let Some(segment) = self.books.segments.get(self.segments)
             && segment.first_row <= self.rows
         {
@@ -106,7 +107,7 @@ impl<'b> Recount<'b> {
     }
 
     /// Differences from the books, in words; none if they agree.
-    pub(crate) fn differences(mut self) -> Vec<String> {
+    pub fn differences(mut self) -> Vec<String> {
         while let Some(segment) = self.books.segments.get(self.segments) {
             self.enter(segment);
         }

@@ -3,11 +3,11 @@
 use super::frame::{Checkpoint, Content, Entry, Owner};
 use super::{FRAME_LIMIT, MAGIC, repair};
 use crate::books::{Begin, Ledger, Totals};
+use crate::damage::Damage;
 use crate::ending::Ending;
 use crate::findings::Findings;
 use crate::metadata::Metadata;
 use crate::parameters::{History, Named, ParameterSet, values_of};
-use crate::recording::Damage;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Source;
 use crepitus_protocol::frame::DELIMITER;

@@ -1,8 +1,7 @@
 //! Columns of the file: the same as those of CSV.
 
 use super::{GROUP_ROWS, other, words};
-use crate::recording::seconds;
-use crate::row::{COLUMNS, END_TICK, Row};
+use crate::row::{COLUMNS, END_TICK, Row, seconds};
 use parquet::basic::{Compression, Encoding, ZstdLevel};
 use parquet::column::reader::{get_column_reader, get_typed_column_reader};
 use parquet::column::writer::ColumnWriter;

@@ -3,7 +3,8 @@
 use crate::support::{
     check_books, is_part, mangled, open, recorded, rows, rows_of, salvaged, sent,
 };
-use crepitus_recording::{Analysis, Cause, Damage, Format, Recording, Row, parquet_writer};
+use crepitus_pages::recorded::Analysis;
+use crepitus_recording::{Cause, Damage, Format, Recording, Row, parquet_writer};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::thread;

@@ -3,7 +3,8 @@
 use crate::support::{
     check_books, metadata, open, plain, record, recorded, rows, rows_of, sent, sent_of,
 };
-use crepitus_recording::{Analysis, Cause, ReadError, RecordError, Recorder, Totals};
+use crepitus_pages::recorded::Analysis;
+use crepitus_recording::{Cause, ReadError, RecordError, Recorder, Totals};
 use std::fs;
 
 #[test]

@@ -9,7 +9,6 @@
 //! Torque between samples is unknown to a step: a jump is late by a part of it, which is
 //! all of the error in f64.
 
-use crate::accuracy::results::Study;
 use crate::watcher::{StudyError, Watcher};
 use crepitus_model::joint::shaft::Linear;
 use crepitus_model::parameters::Tabled;
@@ -77,14 +76,18 @@ pub fn actuator_table(points: &[ActuatorPoint]) -> Table<'_, ActuatorPoint> {
         .rounded(fixed::<1>)
 }
 
-/// Studies the stage, and adds the result to the study.
+/// Studies the stage, by falling rate and precision.
 ///
 /// # Errors
 /// Error of the watcher.
-pub fn add(study: &mut Study, repeats: usize, watcher: &mut dyn Watcher) -> Result<(), StudyError> {
+pub fn points(
+    repeats: usize,
+    watcher: &mut dyn Watcher,
+) -> Result<Vec<ActuatorPoint>, StudyError> {
     let torque = torque_nm()?;
     let exact = voltages::<f64>(&torque, 1)?;
     let ratios = [ratio::<f64>(repeats)?, ratio::<f32>(repeats)?];
+    let mut points = Vec::new();
     for (done, stride) in STRIDES.into_iter().enumerate() {
         let double = voltages::<f64>(&torque, stride)?;
         let single = voltages::<f32>(&torque, stride)?;
@@ -94,7 +97,7 @@ pub fn add(study: &mut Study, repeats: usize, watcher: &mut dyn Watcher) -> Resu
             (Precision::F64, &double, ratios[0]),
             (Precision::F32, &single, ratios[1]),
         ] {
-            study.actuator.push(ActuatorPoint {
+            points.push(ActuatorPoint {
                 precision: precision.name(),
                 step_s,
                 error: off(&of_exact, volts, step_s),
@@ -104,7 +107,7 @@ pub fn add(study: &mut Study, repeats: usize, watcher: &mut dyn Watcher) -> Resu
         }
         watcher.progress(whole(done + 1) / whole(STRIDES.len()))?;
     }
-    Ok(())
+    Ok(points)
 }
 
 /// The joint's torque at the end of each finest step, N·m.

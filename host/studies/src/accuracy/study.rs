@@ -7,6 +7,7 @@ use crate::accuracy::point::Point;
 use crate::accuracy::reference_torque::ReferenceTorque;
 use crate::accuracy::results::{Refused, Skipped, StudiedScene, Study};
 use crate::accuracy::scenes::StudyScene;
+use crate::accuracy::steps::falling;
 use crate::accuracy::timing::{Contestant, Cost, time};
 use crate::sampling::Sampling;
 use crate::true_events::{TimedEvent, TrueEvent};
@@ -16,12 +17,6 @@ use crepitus_model::{Convention, Real};
 use crepitus_scene::run::Lead;
 use crepitus_scene::scene::Precision;
 use std::time::Instant;
-
-/// Steps of a full study, s.
-pub const FULL_STEPS_S: [f64; 9] = [1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6];
-
-/// Steps of a quick one, s.
-pub const QUICK_STEPS_S: [f64; 5] = [1e-3, 2e-4, 1e-4, 5e-5, 2e-5];
 
 /// Repeats of a timing in a full study.
 pub const FULL_REPEATS: usize = 7;
@@ -201,14 +196,6 @@ fn point(
         worst_cycles: f64::NAN,
         instructions_per_step: f64::NAN,
     }
-}
-
-/// Sorts steps, longest first, without duplicates.
-pub(super) fn falling(steps_s: &[f64]) -> Vec<f64> {
-    let mut steps_s = steps_s.to_vec();
-    steps_s.sort_by(|a, b| b.total_cmp(a));
-    steps_s.dedup();
-    steps_s
 }
 
 /// The rungs with a meaning, in each precision.

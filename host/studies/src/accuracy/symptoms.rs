@@ -19,8 +19,7 @@ pub mod motions;
 pub mod table;
 mod timing;
 
-use crate::accuracy::results::Study;
-use crate::accuracy::study::falling;
+use crate::accuracy::steps::falling;
 use crate::sampling::Sampling;
 use crate::symptoms::Given;
 use crate::symptoms::errors::{Errors, Truth};
@@ -89,15 +88,14 @@ pub struct SymptomPlan<'a> {
     pub repeats: usize,
 }
 
-/// Studies every symptom in every form, and adds the results to the study.
+/// Studies every symptom in every form, by symptom, form, precision and falling step.
 ///
 /// # Errors
 /// Error of the watcher, or a step that no device has.
-pub fn add(
-    study: &mut Study,
+pub fn points(
     plan: &SymptomPlan<'_>,
     watcher: &mut dyn Watcher,
-) -> Result<(), StudyError> {
+) -> Result<Vec<SymptomPoint>, StudyError> {
     let all = Given::all();
     let steps_s = falling(plan.steps_s);
     // A shorter step is more work.
@@ -135,8 +133,7 @@ pub fn add(
         (all.iter().position(own), precision)
     };
     points.sort_by_key(place);
-    study.symptoms = points;
-    Ok(())
+    Ok(points)
 }
 
 /// The errors on all motions together, in each precision.

@@ -19,7 +19,6 @@ pub mod recorded;
 pub mod table;
 
 use crate::accuracy::point::Point;
-use crate::accuracy::results::Study;
 use crate::accuracy::scenes::StudyScene;
 use crate::watcher::{StudyError, Watcher};
 use crepitus_ladder::exchange::Input;
@@ -106,18 +105,18 @@ impl<T> From<SettingsError> for TargetError<T> {
     }
 }
 
-/// Runs every subject on the target, and adds the results to the study: to its
-/// points in f32 at the device's tick, and as a separate table.
+/// Runs every subject on the target. Adds the costs to the study's points in f32 at the
+/// device's tick, and returns all of them as a separate table.
 ///
 /// # Errors
 /// Errors of the target or the watcher, or contradictory settings.
-pub fn add<T>(
-    study: &mut Study,
+pub fn costs<T>(
+    points: &mut [Point],
     scenes: &[StudyScene],
     lengths: Lengths,
     mut on_target: impl FnMut(&Plan, &[Input]) -> Result<Vec<Call>, T>,
     watcher: &mut dyn Watcher,
-) -> Result<(), TargetError<T>> {
+) -> Result<OnTarget, TargetError<T>> {
     let mut on = OnTarget {
         label: LABEL,
         tick_cycles: TICK_CYCLES,
@@ -137,7 +136,7 @@ pub fn add<T>(
             let cost = Cost::of(&calls);
             cost_of_subject.add(task, &cost);
             if let (Some(scene), Subject::Rung(_, solver)) = (task.scene, subject) {
-                note(study, scene, solver.name(), &cost);
+                note(points, scene, solver.name(), &cost);
             }
             done += each;
             watcher
@@ -145,11 +144,10 @@ pub fn add<T>(
                 .map_err(StudyError::from)?;
         }
         on.steps += cost_of_subject.all.calls;
-        let frequency = frequency_error(study, *subject);
+        let frequency = frequency_error(points, *subject);
         on.rows.push(cost_of_subject.row(*subject, frequency));
     }
-    study.target = Some(on);
-    Ok(())
+    Ok(on)
 }
 
 fn whole(n: usize) -> f64 {
@@ -181,11 +179,11 @@ fn is_on_the_device(point: &Point) -> bool {
 }
 
 /// The worst frequency error of a rung under its convention.
-fn frequency_error(study: &Study, subject: Subject) -> f64 {
+fn frequency_error(points: &[Point], subject: Subject) -> f64 {
     let Subject::Rung(convention, solver) = subject else {
         return f64::NAN;
     };
-    let points = study.points.iter().filter(|point| {
+    let points = points.iter().filter(|point| {
         is_on_the_device(point)
             && point.convention == convention.name()
             && point.solver == solver.name()
@@ -204,8 +202,8 @@ fn frequency_error(study: &Study, subject: Subject) -> f64 {
 }
 
 /// Adds the cost of a rung to its point.
-fn note(study: &mut Study, scene: &StudyScene, solver: &str, cost: &Cost) {
-    let point = study.points.iter_mut().find(|point| {
+fn note(points: &mut [Point], scene: &StudyScene, solver: &str, cost: &Cost) {
+    let point = points.iter_mut().find(|point| {
         is_on_the_device(point)
             && point.scene == scene.name
             && point.convention == scene.convention()
@@ -301,8 +299,7 @@ mod tests {
             };
             Ok(inputs.iter().map(call).collect())
         };
-        add(&mut study, &scenes, lengths, on_target, &mut Nobody).unwrap();
-        let on = study.target.as_ref().unwrap();
+        let on = costs(&mut study.points, &scenes, lengths, on_target, &mut Nobody).unwrap();
         let names: Vec<_> = on.rows.iter().map(|row| row.subject).collect();
         let rungs = ["exact", "exact-break", "exact-interpolated", "exact-events"];
         assert_eq!(names[..4], rungs);

@@ -1,10 +1,9 @@
 //! The smallest set of a scene's effects within a tolerance, the effects that
 //! were dropped, and why the rest is kept.
 
-use super::hand::{Ended, hand_torque};
+use super::hand::{Ended, WholeRun, hand_torque};
 use super::influence::{Difference, Size, relative};
 use super::smallest::{Set, sets, smallest, without};
-use super::study::{TIMINGS, WholeRun};
 use super::tolerance::{Criterion, Tolerance};
 use super::variant::states;
 use crate::parallel::{Meter, each};
@@ -73,6 +72,8 @@ pub(super) struct Question<'a> {
     pub(super) scene: &'a Scene,
     pub(super) whole: &'a WholeRun,
     pub(super) tolerance: &'a Tolerance,
+    /// Number of timings, of which the fastest counts.
+    pub(super) timings: u32,
 }
 
 /// Number of valid sets of a scene's effects.
@@ -227,7 +228,7 @@ impl Question<'_> {
                 .iter()
                 .filter_map(|(set, _)| part(self.scene, effects, *set)),
         );
-        let times = step_times(&scenes, TIMINGS, || meter.report(watcher))?;
+        let times = step_times(&scenes, self.timings, || meter.report(watcher))?;
         let mut timed = scenes.iter().zip(times);
         let Some((_, whole)) = timed.next() else {
             return Ok(None);

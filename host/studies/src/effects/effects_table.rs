@@ -3,7 +3,7 @@
 //! `added_ns_per_step` is `nan` where it is not above `added_ns_resolution`, the
 //! smallest difference that the timings can tell: it is never zero or less.
 
-use super::results::{Added, Ran, Row};
+use super::row::{Added, Ran, Row};
 use crepitus_pages::table::show::{UNKNOWN, fixed, milli, signed};
 use crepitus_pages::table::{Cell, Table};
 use crepitus_scene::run::AddedTime;
@@ -85,7 +85,7 @@ pub(super) fn serialize<S: Serializer>(rows: &[Row], serializer: S) -> Result<S:
 #[cfg(test)]
 mod tests {
     use super::super::influence::Torque;
-    use super::super::results::{Added, Outcome, Ran};
+    use super::super::row::{Added, Outcome, Ran};
     use super::super::variant::Change;
     use super::*;
     use crepitus_scene::run::AddedTime;

@@ -29,6 +29,12 @@ pub(super) struct Felt {
     pub(super) events: u64,
 }
 
+/// The scene's torque at the hand and its events.
+pub(super) struct WholeRun {
+    pub(super) signal: Vec<f64>,
+    pub(super) events: u64,
+}
+
 /// Runs a scene. `on_torque` gets the torque of each tick, N·m, and returns
 /// whether to continue.
 pub(super) fn hand_torque(

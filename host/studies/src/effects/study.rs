@@ -2,10 +2,11 @@
 
 use super::answer::{Answer, Question, answer, set_count};
 use super::build_up::build_up;
-use super::hand::{Ended, hand_torque, ticks};
+use super::hand::{Ended, WholeRun, hand_torque, ticks};
 use super::influence::{Size, TorqueStatistics};
 use super::refusal::{Refusal, refusal};
-use super::results::{Added, EffectsStudy, Outcome, Ran, Row};
+use super::results::EffectsStudy;
+use super::row::{Added, Outcome, Ran, Row};
 use super::tolerance::Tolerance;
 use super::variant::{Change, Variant, states, variants};
 use super::window::{Candidate, Profile, SHOWN, shown_torques};
@@ -18,7 +19,7 @@ use std::time::Instant;
 
 /// Number of timings, of which the fastest counts: enough for a quiet moment
 /// of a busy machine.
-pub(super) const TIMINGS: u32 = 25;
+const TIMINGS: u32 = 25;
 
 /// Plan of a study.
 #[derive(Clone, Debug)]
@@ -42,12 +43,6 @@ pub enum EffectsError {
     /// The run of the scene itself failed.
     #[error("{0}")]
     Scene(String),
-}
-
-/// The scene's torque at the hand and its events.
-pub(super) struct WholeRun {
-    pub(super) signal: Vec<f64>,
-    pub(super) events: u64,
 }
 
 /// Runs a plan.
@@ -277,6 +272,7 @@ fn find(
                 scene: &plan.scene,
                 whole,
                 tolerance,
+                timings: TIMINGS,
             },
             meter,
             watcher,

@@ -6,8 +6,7 @@ mod trend;
 
 pub(super) use profile::Profile;
 
-use super::hand::hand_torque;
-use super::study::WholeRun;
+use super::hand::{WholeRun, hand_torque};
 use super::variant::Change;
 use crate::parallel::{Meter, each};
 use crate::stability::story::Line;

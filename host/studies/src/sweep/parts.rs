@@ -7,6 +7,7 @@
 
 mod format;
 
+use crate::sweep::kind::Kind;
 use crate::sweep::plan::{Identity, Shard};
 use crate::sweep::row::Row;
 use crepitus_files::output::temporary_with_prefix;
@@ -17,17 +18,6 @@ use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
-
-/// Kind of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Integers.
-    Whole,
-    /// Numbers.
-    Number,
-    /// Texts.
-    Text,
-}
 
 /// Column of a part, with its cells as text; a missing cell is empty.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,38 +45,6 @@ impl Cells {
         match self {
             Self::Constant(text) => text,
             Self::Each(texts) => texts.get(row).map_or("", String::as_str),
-        }
-    }
-}
-
-impl Kind {
-    const ALL: [(Self, &'static str); 3] = [
-        (Self::Whole, "whole"),
-        (Self::Number, "number"),
-        (Self::Text, "text"),
-    ];
-
-    fn name(self) -> &'static str {
-        Self::ALL
-            .iter()
-            .find(|(kind, _)| *kind == self)
-            .map_or("", |(_, name)| name)
-    }
-
-    fn of(name: &str) -> Option<Self> {
-        Self::ALL
-            .iter()
-            .find(|(_, its)| *its == name)
-            .map(|(kind, _)| *kind)
-    }
-
-    /// Returns the kind of a column with cells of both kinds.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        match (self, other) {
-            (a, b) if a == b => a,
-            (Self::Text, _) | (_, Self::Text) => Self::Text,
-            _ => Self::Number,
         }
     }
 }

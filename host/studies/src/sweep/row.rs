@@ -1,6 +1,6 @@
 //! Row of a run: the varied values, and every number of its summary.
 
-use crate::sweep::parts::Kind;
+use crate::sweep::kind::Kind;
 use crepitus_scene::Summary;
 use crepitus_scene::run::EffectSummary;
 use serde_json::{Map, Value};

@@ -3,7 +3,8 @@
 #[cfg(feature = "parquet")]
 mod parquet;
 
-use crate::sweep::parts::{Column, Kind, PartError, Parts, missing};
+use crate::sweep::kind::Kind;
+use crate::sweep::parts::{Column, PartError, Parts, missing};
 use crate::sweep::plan::Identity;
 use crate::sweep::row::FAILURE;
 use crepitus_files::output::{OutputError, hex, sha256};

@@ -3,7 +3,7 @@
 use crate::sweep::plan::Plan;
 use crate::sweep::pool::{Ended, Stop};
 use crate::sweep::row::Row;
-use crate::sweep::store::{StoreError, at};
+use crate::sweep::store_error::{StoreError, at};
 use crepitus_files::output::{Hashed, OwnedFolder, temporary_in};
 use crepitus_scene::output::TraceCsv;
 use crepitus_scene::run::columns;

@@ -13,7 +13,7 @@ use crepitus_scene::run::AddedTime;
 use crepitus_studies::effects::answer::{Dropped, Subset};
 use crepitus_studies::effects::influence::{Difference, Torque};
 use crepitus_studies::effects::report::{html, pictures};
-use crepitus_studies::effects::results::{Added, Outcome, Ran};
+use crepitus_studies::effects::row::{Added, Outcome, Ran};
 use crepitus_studies::effects::variant::Change;
 use crepitus_studies::effects::{Answer, EffectsStudy, HandTorque, Row, VariantTorque};
 use crepitus_studies::{Column, Paper, Section, StudyText};

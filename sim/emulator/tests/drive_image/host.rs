@@ -13,6 +13,7 @@ use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Lane, Nonce, Revision, Session};
 use crepitus_scene::values::values;
 use crepitus_scene::{Overrides, Scene};
+use crepitus_virtual_device::Leg;
 use std::path::Path;
 
 /// Timing of flash and of registers.
@@ -135,8 +136,11 @@ impl Host {
 
     fn switched_on(image: &Image, scene: &Scene, registers: &[u32]) -> Self {
         let values = values(scene).expect("a scene for the device");
-        let mut board =
-            DriveBoard::new(image, scene, NativeComms::new(Some((Revision(1), values))));
+        let mut board = DriveBoard::new(
+            image,
+            Leg::new(scene),
+            NativeComms::new(Some((Revision(1), values))),
+        );
         board.comms_mut().record_bytes();
         board.mcu_mut().listen(registers);
         Self {

@@ -81,5 +81,8 @@ fn the_registers_are_those_of_the_page() {
         lines.fold(String::new(), |all, line| all + sign + line + "\n")
     };
     let changes = differ(&known, &page, "- ") + &differ(&page, &known, "+ ");
-    assert_eq!(known, page, "docs/generated/registers.md differs:\n{changes}{BLESS}");
+    assert_eq!(
+        known, page,
+        "docs/generated/registers.md differs:\n{changes}{BLESS}"
+    );
 }

@@ -5,7 +5,9 @@ use crepitus_emulator::firmware::{Program, image_for_test};
 use crepitus_emulator::pair::Boards;
 use crepitus_emulator::{Image, Pair};
 use crepitus_protocol::Session;
+use crepitus_scene::values::values;
 use crepitus_scene::{Overrides, Scene};
+use crepitus_virtual_device::Leg;
 use std::path::Path;
 use std::time::Duration;
 
@@ -42,10 +44,15 @@ pub(crate) fn images() -> Option<[Image; 2]> {
     ])
 }
 
+pub(crate) fn leg() -> Leg {
+    Leg::new(&scene())
+}
+
 /// The pair with the scene's parameters stored, not plugged in.
 pub(crate) fn pair() -> Option<Pair> {
     let [drive, comms] = images()?;
-    Some(Pair::of(&drive, &comms, &scene()).expect("a scene for the device"))
+    let values = values(&scene()).expect("a scene for the device");
+    Some(Pair::of(&drive, &comms, leg(), &values))
 }
 
 /// Plugs a pair in.

@@ -1,7 +1,7 @@
 //! Power fails while comms writes its flash: the parameters are those of before
 //! or the new ones, and can be saved again.
 
-use crate::host::{Host, boards, client, connected, images, run, scene};
+use crate::host::{Host, boards, client, connected, images, leg, run};
 use crepitus_device::parameter_log::{
     ParameterLog, RECORDS_PER_SECTOR, SECTOR_BYTES, SLOT_BYTES, Sectors as _,
 };
@@ -107,7 +107,7 @@ fn with_a_full_sector() -> Option<Pair> {
         assert!(log.store(revision, &values));
     }
     comms.put(PARAMETERS, log.sectors().bytes());
-    let mut pair = Pair::new(&drive, &comms, &scene());
+    let mut pair = Pair::new(&drive, &comms, leg());
     // The drive need not run.
     pair.boards_mut().mcu_mut().set_hung(true);
     Some(pair)

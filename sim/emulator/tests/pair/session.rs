@@ -1,6 +1,6 @@
 //! A session from the first handshake to the stop.
 
-use crate::host::{MS, arm, boards, client, connected, images, run, scene, ticks_until_off};
+use crate::host::{MS, arm, boards, client, connected, images, leg, run, ticks_until_off};
 use crepitus_client::Event;
 use crepitus_emulator::{Mcu, Pair};
 use crepitus_protocol::management::ResetCause;
@@ -89,7 +89,7 @@ fn a_board_from_the_factory_prepares_its_flash_and_has_the_defaults() {
     let Some([drive, comms]) = images() else {
         return;
     };
-    let mut pair = Pair::new(&drive, &comms, &scene());
+    let mut pair = Pair::new(&drive, &comms, leg());
     // Two erasures, in which the core of comms stands; the drive need not run.
     pair.boards_mut().mcu_mut().set_hung(true);
     pair.plug_in().expect("a device");

@@ -6,7 +6,8 @@ use crepitus_model::Convention;
 use crepitus_scene::Overrides;
 use crepitus_scene::scene::Precision;
 use crepitus_scene::shipped;
-use crepitus_studies::accuracy::study::{FULL_REPEATS, FULL_STEPS_S, QUICK_REPEATS, QUICK_STEPS_S};
+use crepitus_studies::accuracy::steps::{FULL_STEPS_S, QUICK_STEPS_S};
+use crepitus_studies::accuracy::study::{FULL_REPEATS, QUICK_REPEATS};
 use crepitus_studies::accuracy::target::inputs::TICK_S;
 use crepitus_studies::accuracy::{Plan, StudyScene, scenes};
 

@@ -33,8 +33,7 @@ pub(super) fn table(points: &[SymptomPoint]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_studies::accuracy::Study;
-    use crepitus_studies::accuracy::symptoms::{SymptomPlan, add};
+    use crepitus_studies::accuracy::symptoms::{SymptomPlan, points};
     use crepitus_studies::{Cancelled, Watcher};
 
     fn point(
@@ -78,9 +77,7 @@ mod tests {
             precisions: &[Precision::F32, Precision::F64],
             repeats: 1,
         };
-        let mut study = Study::default();
-        add(&mut study, &plan, &mut Alone).unwrap();
-        let table = table(&study.symptoms);
+        let table = table(&points(&plan, &mut Alone).unwrap());
         let book = include_str!("../../../../../docs/accuracy.md");
         let lines: Vec<&str> = table
             .lines()

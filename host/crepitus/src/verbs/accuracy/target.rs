@@ -27,12 +27,13 @@ pub(super) fn add(
     } else {
         Lengths::FULL
     };
-    target::add(study, scenes, lengths, ladder, &mut Watch::new()).map_err(
-        |error: TargetError<String>| match error {
-            TargetError::Study(error) => crate::studying::failed(error),
-            other => Failure::Work(format!("--target: {other}")),
-        },
-    )
+    let costs = target::costs(&mut study.points, scenes, lengths, ladder, &mut Watch::new());
+    let costs = costs.map_err(|error: TargetError<String>| match error {
+        TargetError::Study(error) => crate::studying::failed(error),
+        other => Failure::Work(format!("--target: {other}")),
+    })?;
+    study.target = Some(costs);
+    Ok(())
 }
 
 /// Criterion by which the target chooses, where it does.

@@ -1,7 +1,7 @@
 //! The calibration as one HTML page, complete in itself.
 
+use super::change::Change;
 use super::finding::{Finding, Verdict};
-use super::results::Change;
 use crepitus_client::values::{full_name, show_value};
 use crepitus_pages::plot::page::{
     Section, document, figure as drawn, footer, notes, tables, warnings,

@@ -1,14 +1,13 @@
-//! Results of a calibration: a table, JSON, files, and changes of parameters.
+//! Results of a calibration: a table, JSON and files.
 
+use super::change::Change;
 use super::finding::Finding;
 use super::page;
 use crate::failure::Failure;
 use crate::results::{footer, json_file, svg_files, write as write_files};
-use crepitus_client::connection::parameters::find;
 use crepitus_client::values::{full_name, show_value};
 use crepitus_files::output::Folder;
 use crepitus_pages::table::Table;
-use crepitus_protocol::parameters::{Kind, Parameter};
 use serde_json::{Value as Json, json};
 use std::fmt::Write;
 use std::path::Path;
@@ -21,35 +20,6 @@ const VALUES: &str = "calibration.json";
 
 /// Names of all files.
 pub(super) const NAMES: [&str; 3] = [PAGE, VALUES, "currents.svg"];
-
-/// A parameter, and what it should be.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Change {
-    pub(super) parameter: &'static Parameter,
-    pub(super) value: f64,
-}
-
-/// Proposals of all steps; where two propose the same, the first. Within the parameter's range, with four
-/// digits.
-pub(super) fn changes(findings: &[Finding]) -> Result<Vec<Change>, Failure> {
-    let mut changes: Vec<Change> = Vec::new();
-    for (name, value) in findings.iter().flat_map(|finding| &finding.proposals) {
-        let (id, parameter) = find(name).map_err(Failure::input)?;
-        if changes.iter().all(|change| change.parameter.id != id) {
-            let value = match parameter.kind {
-                Kind::Number(spec) => four_digits(*value).clamp(spec.min, spec.max),
-                Kind::Choice(_) => *value,
-            };
-            changes.push(Change { parameter, value });
-        }
-    }
-    Ok(changes)
-}
-
-/// More are never known.
-fn four_digits(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
-}
 
 /// The summary for people.
 pub(super) fn text(findings: &[Finding], changes: &[Change]) -> String {

@@ -1,8 +1,9 @@
 //! Samples of a motion by hand, without torque.
 
 use super::person::{Person, interrupted};
+use crate::cli::Arming;
 use crate::failure::Failure;
-use crate::following::{Arming, Follower, follow};
+use crate::following::{Follower, follow};
 use crate::interrupt;
 use crate::keys::{Key, Keys};
 use crate::line::{Line, failure};

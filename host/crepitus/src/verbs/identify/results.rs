@@ -1,9 +1,10 @@
 //! The files of an identification.
 
+use super::{chart, page};
 use crate::failure::Failure;
 use crate::results::{footer, json_file, svg_files, write as write_files};
 use crepitus_files::output::{Folder, NewFile};
-use crepitus_identify::brace::{Brace, chart, page, scene};
+use crepitus_identify::brace::{Brace, scene};
 use serde_json::Value;
 use std::io::Write;
 use std::path::Path;

@@ -6,8 +6,9 @@
 )]
 
 use super::recorded::Measured;
+use crate::cli::Arming;
 use crate::failure::Failure;
-use crate::following::{Arming, End, Follower, follow};
+use crate::following::{End, Follower, follow};
 use crate::interrupt;
 use crate::line::{Line, failure, failure_with};
 use crate::output::to_stderr;

@@ -1,10 +1,11 @@
 //! The files of an identification.
 
+use super::chart;
 use super::recorded::Measured;
 use crate::failure::Failure;
 use crate::results::{Files, summary_file, svg_files, write as write_files};
 use crepitus_files::output::Folder;
-use crepitus_identify::actuator::{Actuator, chart};
+use crepitus_identify::actuator::Actuator;
 use serde_json::Value;
 use std::path::Path;
 

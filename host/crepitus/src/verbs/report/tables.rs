@@ -2,8 +2,9 @@
 
 use crate::sections::{counts, section, torque_section};
 use crepitus_pages::plot::number::{count, rounded};
+use crepitus_pages::recorded::RecordingSummary;
 use crepitus_pages::report::Section;
-use crepitus_recording::{Books, Controller, ParameterSet, RecordingSummary, seconds};
+use crepitus_recording::{Books, Controller, ParameterSet, seconds};
 use serde_json::Value;
 
 /// Gaps that are shown.

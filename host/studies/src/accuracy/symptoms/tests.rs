@@ -1,5 +1,4 @@
 use super::*;
-use crate::accuracy::study;
 use crate::accuracy::symptoms::table::symptoms_table;
 use crate::symptoms::event::own;
 use crate::symptoms::follow::follow;
@@ -20,20 +19,12 @@ impl Watcher for Patient {
 const BOTH: [Precision; 2] = [Precision::F32, Precision::F64];
 
 fn studied(steps_s: &[f64]) -> Vec<SymptomPoint> {
-    let nothing = study::Plan {
-        scenes: Vec::new(),
-        steps_s: steps_s.to_vec(),
-        precisions: BOTH.to_vec(),
-        repeats: 1,
-    };
-    let mut study = study::run(&nothing, &mut Patient(0.0)).unwrap();
     let plan = SymptomPlan {
         steps_s,
         precisions: &BOTH,
         repeats: 3,
     };
-    add(&mut study, &plan, &mut Patient(0.0)).unwrap();
-    study.symptoms
+    points(&plan, &mut Patient(0.0)).unwrap()
 }
 
 #[test]

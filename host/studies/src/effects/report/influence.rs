@@ -1,6 +1,6 @@
 //! Influence against cost: a sign an effect, both axes logarithmic.
 
-use crate::effects::results::Added;
+use crate::effects::row::Added;
 use crate::effects::{EffectsStudy, Row};
 use crepitus_scene::cpu_time::CLOCK;
 use crepitus_scene::run::AddedTime;

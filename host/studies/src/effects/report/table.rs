@@ -1,7 +1,7 @@
 //! The table: a row a variant.
 
 use crate::effects::influence::BANDS_HZ;
-use crate::effects::results::{Added, Outcome, Ran};
+use crate::effects::row::{Added, Outcome, Ran};
 use crate::effects::{EffectsStudy, Row};
 use crepitus_pages::plot::page::scrolling;
 use crepitus_scene::cpu_time::CLOCK;

@@ -10,7 +10,8 @@
 //! CSV with a record a *column*: most columns of a sweep do not vary, and a table is written column by
 //! column.
 
-use super::{Cells, Column, Kind};
+use super::{Cells, Column};
+use crate::sweep::kind::Kind;
 use crate::sweep::plan::Shard;
 use crepitus_files::output::sha256;
 use std::io;

@@ -2,7 +2,7 @@
 //! failed has a reason instead of numbers.
 
 use super::{Chunk, INDEX, Rows, TableError};
-use crate::sweep::parts::Kind;
+use crate::sweep::kind::Kind;
 use crate::sweep::plan::Identity;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};

@@ -1,13 +1,13 @@
 //! The columns of a recording's report: those that every report draws, and those of the effects
 //! that were on besides crepitus.
 
-use crate::analysis::Derived;
-use crate::parameters::History;
-use crate::row::Row;
+use crate::recorded::analysis::Derived;
 use crepitus_model::parameters::Source;
 use crepitus_model::render::effects::{EffectSettings, EffectSpec, SPECS};
 use crepitus_protocol::parameters::{self, find};
 use crepitus_protocol::{LimitReason, Values};
+use crepitus_recording::History;
+use crepitus_recording::Row;
 use crepitus_scene::trace::{Column, ColumnKind};
 
 /// The columns that every report of a recording draws.
@@ -167,11 +167,11 @@ fn of_effect(values: &Values, spec: &EffectSpec) -> Vec<(u8, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::Object;
-    use crate::parameters::{ParameterSet, named_values};
+    use crate::recorded::analysis::Object;
     use crepitus_model::Tabled;
     use crepitus_model::render::effects::lead_pipe::LeadPipeSettings;
     use crepitus_protocol::telemetry::SampleFlags;
+    use crepitus_recording::{ParameterSet, named_values};
 
     fn set(values: &Values, first_row: u64) -> ParameterSet {
         ParameterSet {

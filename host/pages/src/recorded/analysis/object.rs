@@ -1,10 +1,10 @@
 //! The imaginary object, reconstructed from a device's samples.
 
-use crate::row::Row;
 use crepitus_model::Parameters;
 use crepitus_model::joint::oscillator::Oscillator;
 use crepitus_protocol::TICK_S;
 use crepitus_protocol::telemetry::SampleFlags;
+use crepitus_recording::Row;
 use crepitus_scene::trace::{EventKind, EventRecord};
 
 /// Angle and velocity of the imaginary object; NaN where they are unknown.

@@ -1,13 +1,13 @@
 //! The summary of a recording.
 
-use crate::books::Totals;
-use crate::ending::Ending;
-use crate::metadata::Controller;
-use crate::parameters::History;
-use crate::recording::{Recording, seconds};
-use crate::row::Row;
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{LimitReason, TICK_S};
+use crepitus_recording::Controller;
+use crepitus_recording::Ending;
+use crepitus_recording::History;
+use crepitus_recording::Row;
+use crepitus_recording::Totals;
+use crepitus_recording::{Recording, seconds};
 use crepitus_scene::run::TorqueSummary;
 use serde::Serialize;
 use std::collections::BTreeMap;

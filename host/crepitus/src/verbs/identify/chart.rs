@@ -1,7 +1,6 @@
 //! Figure of the measured and the simulated angle of each swing, with the residual.
 
-use crate::brace::Brace;
-use crate::brace::problem::{RESIDUAL_S, STRIDE};
+use crepitus_identify::brace::{Brace, Trace, TracePoint};
 use crepitus_pages::plot::palette::{OBJECT, SHAFT};
 use crepitus_pages::plot::{Axis, Chart, Figure, Key, Panel, Point, Sign, stack};
 
@@ -17,12 +16,15 @@ const HEAD: f64 = 30.0;
 const MOST: usize = 6;
 
 /// Draws angle and residual of the first swings, one below the other.
-pub fn figure(brace: &Brace) -> Figure {
-    let headings: Vec<String> = (brace.swings.iter().enumerate())
-        .map(|(at, swing)| format!("Swing {} · recording {}", at + 1, swing.recording + 1))
+pub(super) fn figure(brace: &Brace) -> Figure {
+    let traces: Vec<_> = (brace.traces().take(MOST).enumerate())
+        .map(|(at, trace)| {
+            let heading = format!("Swing {} · recording {}", at + 1, trace.recording + 1);
+            (heading, trace)
+        })
         .collect();
-    let panels = (headings.iter().enumerate().take(MOST))
-        .flat_map(|(at, heading)| panels(brace, at, heading))
+    let panels = (traces.iter())
+        .flat_map(|(heading, trace)| panels(trace, heading))
         .collect();
     let svg = stack(
         WIDTH,
@@ -45,28 +47,19 @@ pub fn figure(brace: &Brace) -> Figure {
 }
 
 /// Angle and residual of a swing.
-fn panels<'h>(brace: &Brace, at: usize, heading: &'h str) -> Vec<Panel<'h>> {
-    let swing = &brace.swings[at];
-    let hang = (brace.fit.hangs_rad.get(swing.recording))
-        .copied()
-        .unwrap_or(0.0);
-    let time_s = |i: usize| swing.begins_s + i as f64 * RESIDUAL_S;
-    let measured_rad = swing.angles_rad.iter().step_by(STRIDE);
-    let triples: Vec<(f64, f64, f64)> = measured_rad
-        .zip(&brace.fit.residuals[at])
-        .enumerate()
-        .filter(|(_, (_, residual))| !residual.is_nan())
-        .map(|(i, (angle, residual))| (time_s(i), angle - hang, *residual))
-        .collect();
-    let points = |of: &dyn Fn(&(f64, f64, f64)) -> f64| -> Vec<Point> {
-        let degrees = triples.iter().map(|t| Point::new(t.0, of(t).to_degrees()));
+fn panels<'h>(trace: &Trace, heading: &'h str) -> Vec<Panel<'h>> {
+    let points = |of: &dyn Fn(&TracePoint) -> f64| -> Vec<Point> {
+        let degrees = (trace.points.iter()).map(|t| Point::new(t.time_s, of(t).to_degrees()));
         degrees.collect()
     };
-    let measured = points(&|t| t.1);
-    let simulated = points(&|t| t.1 - t.2);
-    let residual = points(&|t| t.2);
-    let (first, last) = (triples.first(), triples.last());
-    let (from, to) = (first.map_or(0.0, |t| t.0), last.map_or(1.0, |t| t.0));
+    let measured = points(&|t| t.measured_rad);
+    let simulated = points(&|t| t.measured_rad - t.residual_rad);
+    let residual = points(&|t| t.residual_rad);
+    let (first, last) = (trace.points.first(), trace.points.last());
+    let (from, to) = (
+        first.map_or(0.0, |t| t.time_s),
+        last.map_or(1.0, |t| t.time_s),
+    );
     let x = || Axis::linear(from, to, 8);
     let angles = Axis::covering(measured.iter().map(|p| p.y), 4);
     let rest = Axis::covering(residual.iter().map(|p| p.y), 4);

@@ -4,11 +4,11 @@
 mod object;
 mod summary;
 
-use crate::books::Recount;
-use crate::parameters::InForce;
-use crate::recording::Recording;
-use crate::row::Row;
 use crepitus_protocol::Values;
+use crepitus_recording::InForce;
+use crepitus_recording::Recording;
+use crepitus_recording::Recount;
+use crepitus_recording::Row;
 use crepitus_scene::trace::EventRecord;
 pub use object::Object;
 use object::ObjectTracker;

@@ -1,11 +1,9 @@
 //! Figure of the measured and the fitted impedance, with the residual.
 
-use crate::actuator::Actuator;
+use crepitus_identify::actuator::{Actuator, ImpedancePoint};
 use crepitus_pages::plot::number::rounded;
 use crepitus_pages::plot::palette::{OBJECT, SHAFT};
 use crepitus_pages::plot::{Axis, Chart, Figure, Key, Panel, Point, Sign, stack};
-use crepitus_plant::spectrum::Complex;
-use std::f64::consts::TAU;
 
 /// Width and heights, CSS pixels.
 const WIDTH: f64 = 960.0;
@@ -13,24 +11,20 @@ const HEIGHT: f64 = 240.0;
 const LOW_HEIGHT: f64 = 190.0;
 
 /// Draws magnitude, phase and residual.
-pub fn figure(actuator: &Actuator) -> Figure {
-    let z = &actuator.impedance;
-    let fitted = |omega: f64| {
-        // The measured impedance has the delay of the measurement in it.
-        1.0 / z.admittance(omega).0
+pub(super) fn figure(actuator: &Actuator) -> Figure {
+    let all: Vec<_> = actuator.impedance_points().collect();
+    let points = |of: &dyn Fn(&ImpedancePoint) -> f64| -> Vec<Point> {
+        (all.iter()
+            .map(|point| Point::new(point.frequency_hz, of(point))))
+        .collect()
     };
-    let points = |of: &dyn Fn(f64, Complex<f64>) -> f64| -> Vec<Point> {
-        (actuator.means.iter())
-            .map(|mean| Point::new(mean.omega / TAU, of(mean.omega, mean.impedance)))
-            .collect()
-    };
-    let measured_ohm = points(&|_, z| z.norm());
-    let fitted_ohm = points(&|omega, _| fitted(omega).norm());
-    let measured_degrees = points(&|_, z| z.arg().to_degrees());
-    let fitted_degrees = points(&|omega, _| fitted(omega).arg().to_degrees());
+    let measured_ohm = points(&|point| point.measured_ohm.norm());
+    let fitted_ohm = points(&|point| point.fitted_ohm.norm());
+    let measured_degrees = points(&|point| point.measured_ohm.arg().to_degrees());
+    let fitted_degrees = points(&|point| point.fitted_ohm.arg().to_degrees());
     // Line by line: between means, the curvature of the hump would show.
-    let residual: Vec<Point> = (actuator.misfits.iter())
-        .map(|(omega, share)| Point::new(omega / TAU, 100.0 * share))
+    let residual: Vec<Point> = (actuator.misfits())
+        .map(|(hz, share)| Point::new(hz, 100.0 * share))
         .collect();
     let frequencies = || {
         let (first, last) = (measured_ohm.first(), measured_ohm.last());

@@ -1,6 +1,7 @@
 //! HTML page of the result, in one file.
 
-use crate::brace::{Brace, QuantityResult, chart};
+use super::chart;
+use crepitus_identify::brace::{Brace, QuantityResult};
 use crepitus_pages::plot::page::{document, figure, footer, notes};
 use maud::html;
 
@@ -8,7 +9,7 @@ use maud::html;
 const LAYOUT: &str = "section.table th, section.table td { text-align: left }";
 
 /// Returns the page as HTML.
-pub fn html(brace: &Brace, title: &str, last_line: &str) -> String {
+pub(super) fn html(brace: &Brace, title: &str, last_line: &str) -> String {
     let (swings, seconds) = brace.swung();
     let body = html! {
         header {

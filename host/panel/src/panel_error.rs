@@ -1,0 +1,37 @@
+//! Errors of starting the panel.
+
+use std::net::IpAddr;
+
+/// Errors of starting.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PanelError {
+    /// This computer does not have the address.
+    #[error(
+        "--lan {address}: this computer has no such address: `ip address` lists those that it has"
+    )]
+    Address {
+        /// Address.
+        address: IpAddr,
+    },
+    /// The port cannot be used.
+    #[error(
+        "port {port} of {address} cannot be used: {source}; choose another one with --port (0 is any free one)"
+    )]
+    Port {
+        /// Address.
+        address: IpAddr,
+        /// Port.
+        port: u16,
+        /// Error of the system.
+        source: std::io::Error,
+    },
+    /// The system has no random numbers, or no threads.
+    #[error("the panel cannot start: {0}")]
+    System(String),
+    /// Built without TLS.
+    #[error(
+        "--lan needs TLS, and this crepitus was built without it: build it with `--features lan`"
+    )]
+    NoTls,
+}
