@@ -200,6 +200,50 @@ fn every_dependency_has_its_reason() {
     }
 }
 
+/// The names of this project's packages that a package is built from, without `crepitus-`.
+fn uses(manifest: &str) -> BTreeSet<String> {
+    let mut is_in_dependencies = false;
+    let mut used = BTreeSet::new();
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            is_in_dependencies = line.ends_with("dependencies]") && !line.contains("dev-");
+        }
+        let name = line.split(['.', ' ', '=']).next().unwrap_or_default();
+        if let (true, Some(name)) = (is_in_dependencies, name.strip_prefix("crepitus-")) {
+            used.insert(name.trim_start_matches("firmware-").to_owned());
+        }
+    }
+    used
+}
+
+#[test]
+fn packages_use_those_that_the_architecture_names() {
+    let root = repository();
+    let page = page("architecture.md");
+    let (_, table) = page.split_once("| folder | what it is | uses |\n").unwrap();
+    let mut folders = BTreeSet::new();
+    for row in table.lines().skip(1).take_while(|line| line.starts_with('|')) {
+        let cells: Vec<_> = row.split('|').map(str::trim).collect();
+        let [_, which, _, used, _] = cells[..] else {
+            panic!("{row}");
+        };
+        let named: BTreeSet<_> = (used.split(", ").filter(|name| !name.is_empty()))
+            .map(str::to_owned)
+            .collect();
+        for folder in which.split('`').skip(1).step_by(2) {
+            let manifest = fs::read_to_string(root.join(folder).join("Cargo.toml")).unwrap();
+            assert_eq!(uses(&manifest), named, "{folder}");
+            folders.insert(folder.to_owned());
+        }
+    }
+    let manifest = fs::read_to_string(root.join("Cargo.toml")).unwrap();
+    let (_, members) = manifest.split_once("members = [").unwrap();
+    let (members, _) = members.split_once(']').unwrap();
+    for member in members.split('"').skip(1).step_by(2) {
+        assert!(folders.contains(member), "{member}");
+    }
+}
+
 /// The folder of a package of the workspace.
 fn folder_of(package: &str) -> Option<PathBuf> {
     let root = repository();

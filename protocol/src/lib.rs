@@ -56,6 +56,7 @@
 extern crate std;
 
 mod array;
+mod checksum;
 pub mod chirp;
 pub mod coil;
 pub mod counters;

@@ -5,7 +5,6 @@
 //! An id never changes its meaning and is never reused. A removed parameter
 //! leaves a gap.
 
-use crate::settings::ValueError;
 use crepitus_model::Parameters;
 use crepitus_model::control::current_loop::CurrentLoopSettings;
 use crepitus_model::control::device_limits::{
@@ -223,18 +222,6 @@ impl Values {
             self.set(*id, f64::from(option));
         }
         self
-    }
-
-    /// Checks the range of every value.
-    ///
-    /// # Errors
-    /// [`ValueError`] for the first value that is out of range or no valid
-    /// choice.
-    pub fn check(&self) -> Result<(), ValueError> {
-        match self.iter().find(|(p, value)| !p.allows(*value)) {
-            Some((parameter, _)) => Err(ValueError::OutOfRange { id: parameter.id }),
-            None => Ok(()),
-        }
     }
 
     /// The first parameter that differs and can only change while disarmed.

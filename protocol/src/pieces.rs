@@ -11,7 +11,7 @@
 //! number. The seal depends on the boot counter of comms: no piece of before a restart is taken for
 //! one of after it.
 
-use crate::frame::CRC;
+use crate::checksum::CRC;
 use crate::parameters::{DEFAULTS, PARAMETER_COUNT};
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;

@@ -172,6 +172,18 @@ impl DeviceSettings {
 }
 
 impl Values {
+    /// Checks the range of every value.
+    ///
+    /// # Errors
+    /// [`ValueError`] for the first value that is out of range or no valid
+    /// choice.
+    pub fn check(&self) -> Result<(), ValueError> {
+        match self.iter().find(|(p, value)| !p.allows(*value)) {
+            Some((parameter, _)) => Err(ValueError::OutOfRange { id: parameter.id }),
+            None => Ok(()),
+        }
+    }
+
     /// The joint's settings, on or off.
     fn joint(&self) -> Settings {
         Settings {

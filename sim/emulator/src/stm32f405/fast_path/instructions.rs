@@ -16,59 +16,6 @@ use rsemu::cpu::arm::v7m::isa::{
 use rsemu::cpu::arm::v7m::sys::ccr;
 use rsemu::cpu::arm::v7m::{ArmV7m, xpsr};
 
-/// Cycles of a branch that is taken, besides the instruction's one.
-const REFILL: u64 = 2;
-
-/// Returns whether the fast path has an instruction. That it can be executed there is
-/// decided when it is.
-pub(super) fn is_plain(instruction: &Insn) -> bool {
-    match instruction {
-        Insn::DataProc { op, rd, .. } => *rd != 15 || op.is_test(),
-        Insn::LoadStore { unpriv, .. } => !unpriv,
-        Insn::LoadStoreMultiple { list, .. } => *list != 0,
-        Insn::Extend { op, .. } => !matches!(op, ExtendOp::Sxtb16 | ExtendOp::Uxtb16),
-        Insn::Hint { op } => matches!(op, HintOp::Nop | HintOp::Yield | HintOp::Preload),
-        Insn::ShiftReg { .. }
-        | Insn::Adr { .. }
-        | Insn::MovImm16 { .. }
-        | Insn::Branch { .. }
-        | Insn::BranchLink { .. }
-        | Insn::Bx { .. }
-        | Insn::Blx { .. }
-        | Insn::Cbz { .. }
-        | Insn::TableBranch { .. }
-        | Insn::It { .. }
-        | Insn::LoadLiteral { .. }
-        | Insn::LoadStoreDual { .. }
-        | Insn::Mul { .. }
-        | Insn::MulLong { .. }
-        | Insn::Div { .. }
-        | Insn::Misc { .. }
-        | Insn::Bitfield { .. }
-        | Insn::Barrier { .. } => true,
-        Insn::Fp(instruction) => floats::is_plain(instruction),
-        _ => false,
-    }
-}
-
-/// The core's registers while the fast path runs, and what it needs.
-pub(super) struct Executor<'a> {
-    pub(super) r: [u32; 16],
-    pub(super) xpsr: u32,
-    pub(super) cycles: u64,
-    /// The instruction has set the program counter.
-    pub(super) has_branched: bool,
-    pub(super) ccr: u32,
-    pub(super) is_privileged: bool,
-    /// The floating-point unit is enabled and owes no saving of its registers.
-    pub(super) has_floats: bool,
-    pub(super) floats: Floats,
-    pub(super) core: &'a ArmV7m,
-    pub(super) permissions: &'a mut Permissions,
-    pub(super) windows: &'a Windows,
-    pub(super) timing: Timing<'a>,
-}
-
 impl Executor<'_> {
     /// Executes instructions until these cycles have passed, or one is not plain.
     pub(super) fn run(&mut self, code: &mut Code, most: u64, mut each: impl FnMut(&Executed)) {
@@ -298,52 +245,6 @@ impl Executor<'_> {
             _ => return None,
         }
         Some(())
-    }
-
-    /// Goes on at an address.
-    fn branch(&mut self, target: u32) {
-        self.r[15] = target & !1;
-        self.has_branched = true;
-        self.cycles += REFILL;
-    }
-
-    /// Goes on at an address from a register or from memory; `None` if that is an
-    /// exception's return, or faults.
-    pub(super) fn jump(&mut self, address: u32) -> Option<()> {
-        if !is_jump(address) {
-            return None;
-        }
-        self.branch(address);
-        Some(())
-    }
-
-    pub(super) fn get(&self, register: u8) -> u32 {
-        self.r[usize::from(register & 15)]
-    }
-
-    /// Sets a register other than the program counter.
-    pub(super) fn set(&mut self, register: u8, value: u32) {
-        if register & 15 != 15 {
-            self.r[usize::from(register & 15)] = value;
-        }
-    }
-
-    fn flag(&self, mask: u32) -> bool {
-        self.xpsr & mask != 0
-    }
-
-    fn set_flag(&mut self, mask: u32, is_set: bool) {
-        self.xpsr = self.xpsr & !mask | if is_set { mask } else { 0 };
-    }
-
-    fn set_nz(&mut self, value: u32) {
-        self.set_flag(xpsr::N, value >> 31 == 1);
-        self.set_flag(xpsr::Z, value == 0);
-    }
-
-    fn set_it_state(&mut self, it: u8) {
-        let it = u32::from(it);
-        self.xpsr = self.xpsr & !xpsr::IT_MASK | it >> 2 << 10 | (it & 3) << 25;
     }
 
     fn process(&mut self, op: DpOp, s: bool, rd: u8, rn: u8, operand: Operand) {
