@@ -3,9 +3,8 @@
 //! The first complete frame after a delimiter is always received: the decoder
 //! discards and counts invalid bytes and resynchronises at the next zero byte.
 
-use crate::frame::{
-    BODY_BYTES, CRC_BYTES, Checksum, DELIMITER, FRAME_BYTES, SoftwareCrc, WORD, WordCrc,
-};
+use crate::checksum::{CRC_BYTES, Checksum, SoftwareCrc, WORD, WordCrc};
+use crate::frame::{BODY_BYTES, DELIMITER, FRAME_BYTES};
 use crate::lane::Lane;
 use cobs::{DecodeResult, DecoderState};
 use crc::CRC_32_ISO_HDLC;

@@ -4,7 +4,7 @@ use crate::columns::words;
 use crate::errors;
 use crate::signals::Signals;
 use crepitus_protocol::telemetry::SampleFlags;
-use crepitus_recording::{Damage, Recording, Row};
+use crepitus_recording::{COLUMNS, Cell, Damage, Recording, Row};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -12,65 +12,91 @@ use serde_json::json;
 use std::path::PathBuf;
 
 /// Samples by column, with the names of a recording's columns. A value that was not measured is
-/// NaN.
-#[derive(Default)]
+/// NaN; the phase is a number, and of the notes there are those that are flags.
 pub(crate) struct Samples {
-    tick: Vec<u64>,
-    time_s: Vec<f64>,
-    count: Vec<i32>,
-    angle_rad: Vec<f64>,
-    omega_rad_s: Vec<f32>,
-    phase: Vec<i8>,
-    event: Vec<&'static str>,
-    model_torque_nm: Vec<f32>,
-    torque_nm: Vec<f32>,
-    current_a: Vec<f32>,
-    coil_current_a: Vec<f32>,
-    revision: Vec<u32>,
-    limit: Vec<&'static str>,
-    settling: Vec<bool>,
-    lost: Vec<bool>,
-    late: Vec<bool>,
+    columns: Vec<(&'static str, Values)>,
+    rows: usize,
+}
+
+/// The values of a column.
+enum Values {
+    U64(fn(&Row) -> u64, Vec<u64>),
+    U32(fn(&Row) -> u32, Vec<u32>),
+    I32(fn(&Row) -> i32, Vec<i32>),
+    F64(fn(&Row) -> f64, Vec<f64>),
+    F32(fn(&Row) -> f32, Vec<f32>),
+    Measured(fn(&Row) -> Option<f32>, Vec<f32>),
+    I8(fn(&Row) -> i8, Vec<i8>),
+    Word(fn(&Row) -> &'static str, Vec<&'static str>),
+    Flag(u16, Vec<bool>),
+}
+
+/// The notes that are flags.
+const FLAGS: [(&str, u16); 3] = [
+    ("settling", SampleFlags::SETTLING),
+    ("lost", SampleFlags::LOST),
+    ("late", SampleFlags::LATE),
+];
+
+impl Default for Samples {
+    fn default() -> Self {
+        let columns = COLUMNS.iter().filter_map(|column| {
+            let values = match (column.name, column.cell) {
+                ("phase", _) => Values::I8(|row| row.flags.phase_sign(), Vec::new()),
+                ("event", _) => Values::Word(Row::event, Vec::new()),
+                ("limit", _) => Values::Word(|row| row.flags.limit().name(), Vec::new()),
+                (_, Cell::U64(get, _)) => Values::U64(get, Vec::new()),
+                (_, Cell::U32(get, _)) => Values::U32(get, Vec::new()),
+                (_, Cell::I32(get, _)) => Values::I32(get, Vec::new()),
+                (_, Cell::F64(get, _)) => Values::F64(get, Vec::new()),
+                (_, Cell::F32(get, _)) => Values::F32(get, Vec::new()),
+                (_, Cell::Measured(get, _)) => Values::Measured(get, Vec::new()),
+                (_, Cell::Word(_)) => return None,
+            };
+            Some((column.name, values))
+        });
+        let flags = FLAGS.map(|(name, bit)| (name, Values::Flag(bit, Vec::new())));
+        Self {
+            columns: columns.chain(flags).collect(),
+            rows: 0,
+        }
+    }
 }
 
 impl Samples {
     pub(crate) fn push(&mut self, row: &Row) {
-        self.tick.push(row.tick);
-        self.time_s.push(row.time_s);
-        self.count.push(row.count);
-        self.angle_rad.push(row.angle_rad);
-        self.omega_rad_s.push(row.omega_rad_s);
-        self.phase.push(row.flags.phase_sign());
-        self.event.push(row.event());
-        self.model_torque_nm.push(row.model_torque_nm);
-        self.torque_nm.push(row.torque_nm);
-        self.current_a.push(row.current_a.unwrap_or(f32::NAN));
-        self.coil_current_a.push(row.coil_a.unwrap_or(f32::NAN));
-        self.revision.push(row.revision);
-        self.limit.push(row.flags.limit().name());
-        self.settling.push(row.flags.has(SampleFlags::SETTLING));
-        self.lost.push(row.flags.has(SampleFlags::LOST));
-        self.late.push(row.flags.has(SampleFlags::LATE));
+        self.rows += 1;
+        for (_, values) in &mut self.columns {
+            match values {
+                Values::U64(get, all) => all.push(get(row)),
+                Values::U32(get, all) => all.push(get(row)),
+                Values::I32(get, all) => all.push(get(row)),
+                Values::F64(get, all) => all.push(get(row)),
+                Values::F32(get, all) => all.push(get(row)),
+                Values::Measured(get, all) => all.push(get(row).unwrap_or(f32::NAN)),
+                Values::I8(get, all) => all.push(get(row)),
+                Values::Word(get, all) => all.push(get(row)),
+                Values::Flag(bit, all) => all.push(row.flags.has(*bit)),
+            }
+        }
     }
 
     pub(crate) fn into_dict(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let dict = PyDict::new(py);
-        dict.set_item("tick", self.tick.into_pyarray(py))?;
-        dict.set_item("t_s", self.time_s.into_pyarray(py))?;
-        dict.set_item("count", self.count.into_pyarray(py))?;
-        dict.set_item("angle_rad", self.angle_rad.into_pyarray(py))?;
-        dict.set_item("omega_rad_s", self.omega_rad_s.into_pyarray(py))?;
-        dict.set_item("phase", self.phase.into_pyarray(py))?;
-        dict.set_item("event", words(py, &self.event))?;
-        dict.set_item("model_torque_nm", self.model_torque_nm.into_pyarray(py))?;
-        dict.set_item("torque_nm", self.torque_nm.into_pyarray(py))?;
-        dict.set_item("current_a", self.current_a.into_pyarray(py))?;
-        dict.set_item("coil_current_a", self.coil_current_a.into_pyarray(py))?;
-        dict.set_item("revision", self.revision.into_pyarray(py))?;
-        dict.set_item("limit", words(py, &self.limit))?;
-        dict.set_item("settling", self.settling.into_pyarray(py))?;
-        dict.set_item("lost", self.lost.into_pyarray(py))?;
-        dict.set_item("late", self.late.into_pyarray(py))?;
+        for (name, values) in self.columns {
+            match values {
+                Values::U64(_, all) => dict.set_item(name, all.into_pyarray(py))?,
+                Values::U32(_, all) => dict.set_item(name, all.into_pyarray(py))?,
+                Values::I32(_, all) => dict.set_item(name, all.into_pyarray(py))?,
+                Values::F64(_, all) => dict.set_item(name, all.into_pyarray(py))?,
+                Values::F32(_, all) | Values::Measured(_, all) => {
+                    dict.set_item(name, all.into_pyarray(py))?;
+                }
+                Values::I8(_, all) => dict.set_item(name, all.into_pyarray(py))?,
+                Values::Word(_, all) => dict.set_item(name, words(py, &all))?,
+                Values::Flag(_, all) => dict.set_item(name, all.into_pyarray(py))?,
+            }
+        }
         Ok(dict)
     }
 }
@@ -88,7 +114,7 @@ pub(crate) fn read_recording(
         let recording = Recording::open(&path, Damage::Refuse).map_err(failed)?;
         for row in recording.rows().map_err(failed)? {
             samples.push(&row.map_err(failed)?);
-            if samples.tick.len().is_multiple_of(10_000) {
+            if samples.rows.is_multiple_of(10_000) {
                 signals.check()?;
             }
         }

@@ -21,6 +21,7 @@
 
 mod arming;
 mod books;
+mod column;
 mod damage;
 mod ending;
 mod findings;
@@ -39,6 +40,7 @@ mod shaft;
 pub use arming::ArmingPushes;
 pub use books::{Begin, Books, Cause, Gap, Recount, Segment, Totals};
 pub use damage::Damage;
+pub use column::{COLUMNS, Cell, Column};
 pub use ending::{EndCause, Ending};
 pub use findings::Findings;
 pub use log::disk::{Background, Disk};
@@ -46,7 +48,7 @@ pub use log::recorder::{RecordError, Recorder};
 pub use metadata::{Controller, Metadata};
 pub use parameters::{History, InForce, Named, ParameterSet, named_values};
 pub use recording::{Format, ReadError, Recording, Rows};
-pub use row::{COLUMNS, Row, Step, seconds};
+pub use row::{Row, Step, seconds};
 pub use samples::Samples;
 
 use std::path::Path;

@@ -9,6 +9,7 @@
 //!
 //! Times are those of the recording's begin plus the time of the row.
 
+use crate::column::{COLUMNS, Cell, Column};
 use crate::parameters::Named;
 use crate::recording::{ReadError, Recording};
 use crate::row::{Row, Step, seconds};
@@ -75,25 +76,39 @@ impl Range {
     }
 }
 
+/// The columns of a row of which a message has the range.
+fn ranged() -> impl Iterator<Item = &'static Column> {
+    COLUMNS.iter().filter(|column| column.is_ranged)
+}
+
 /// The samples of a millisecond.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Bin {
     last: Option<Row>,
-    model: Range,
-    torque: Range,
-    current: Range,
-    coil: Range,
+    /// Of the columns that have one, in their order.
+    ranges: Vec<Range>,
+}
+
+impl Default for Bin {
+    fn default() -> Self {
+        Self {
+            last: None,
+            ranges: ranged().map(|_| Range::default()).collect(),
+        }
+    }
 }
 
 impl Bin {
     fn add(&mut self, row: &Row) {
-        self.model.add(row.model_torque_nm);
-        self.torque.add(row.torque_nm);
-        if let Some(current_a) = row.current_a {
-            self.current.add(current_a);
-        }
-        if let Some(coil_a) = row.coil_a {
-            self.coil.add(coil_a);
+        for (range, column) in self.ranges.iter_mut().zip(ranged()) {
+            let value = match column.cell {
+                Cell::F32(get, _) => Some(get(row)),
+                Cell::Measured(get, _) => get(row),
+                _ => None,
+            };
+            if let Some(value) = value {
+                range.add(value);
+            }
         }
         self.last = Some(*row);
     }
@@ -109,10 +124,9 @@ impl Bin {
             "limit": row.flags.limit().name(),
             "revision": row.revision,
         });
-        self.model.members("model_torque_nm", &mut message);
-        self.torque.members("torque_nm", &mut message);
-        self.current.members("current_a", &mut message);
-        self.coil.members("coil_current_a", &mut message);
+        for (range, column) in self.ranges.iter().zip(ranged()) {
+            range.members(column.name, &mut message);
+        }
         Some((row.time_s, message))
     }
 }
@@ -128,21 +142,10 @@ fn knee_schema() -> Value {
         "limit": { "type": "string", "description": "why the torque is not the model's" },
         "revision": { "type": "integer", "description": "of the parameters in force" },
     });
-    for (name, about) in [
-        ("model_torque_nm", "torque of the model, N·m"),
-        ("torque_nm", "torque commanded to the motor, N·m"),
-        (
-            "current_a",
-            "measured current, A; null if it was not measured",
-        ),
-        (
-            "coil_current_a",
-            "current of the vibration actuator's coil, A, means of five ticks; null while it is not driven",
-        ),
-    ] {
+    for Column { name, about, .. } in ranged() {
         for part in ["low", "mean", "high"] {
             properties[format!("{name}_{part}")] =
-                number(&format!("{about}: {part} of the millisecond"));
+                number(&format!("{about} (null here): {part} of the millisecond"));
         }
     }
     json!({ "type": "object", "properties": properties })

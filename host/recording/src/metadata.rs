@@ -95,8 +95,8 @@ impl Metadata {
 }
 
 fn columns() -> Map<String, Value> {
-    crate::row::COLUMNS
-        .iter()
-        .map(|(name, meaning)| ((*name).to_owned(), json!(meaning)))
+    let columns = crate::column::COLUMNS.iter();
+    columns
+        .map(|column| (column.name.to_owned(), json!(column.about)))
         .collect()
 }

@@ -1,48 +1,11 @@
-//! A sample as a line of CSV.
+//! A sample as a row.
 
+use crate::column::{COLUMNS, Cell, Column};
 use crepitus_model::render::effects::Phases;
 use crepitus_protocol::TICK_S;
 use crepitus_protocol::telemetry::SampleFlags;
 use serde_json::{Map, Number, Value};
 use std::fmt::Write as _;
-
-/// The columns, with what they mean.
-pub const COLUMNS: [(&str, &str); 14] = [
-    ("tick", "ticks of 50 µs since the drive has started"),
-    ("t_s", "time since the first recorded tick, s"),
-    ("count", "counts of the encoder since the angle's zero"),
-    ("angle_rad", "angle of the joint, rad; grows with flexion"),
-    (
-        "omega_rad_s",
-        "estimated velocity of the joint, rad/s: the drive's own estimator",
-    ),
-    ("phase", "of the imaginary object: stick, slip+, slip-"),
-    ("event", "what happened in the tick: break, stick, or both"),
-    (
-        "model_torque_nm",
-        "torque of the model, N·m; positive opposes growing angle",
-    ),
-    ("torque_nm", "torque commanded to the motor, N·m"),
-    (
-        "current_a",
-        "measured current, A; positive drives towards growing angle; empty if it was not measured",
-    ),
-    (
-        "coil_current_a",
-        "measured current of the vibration actuator's coil, A: the mean of five ticks, the same in each of them; \
-         empty while it is not driven",
-    ),
-    ("revision", "of the parameters in force"),
-    (
-        "limit",
-        "why the torque is not the model's: none, torque, slew, current, voltage, turned-back, holding, not-armed, range, tank",
-    ),
-    (
-        "notes",
-        "settling: parameters are ramping; lost: count rejected; late: rendering was late; tank:N: eighths of the torque of clonus and reflex that the tank holds back; \
-         EFFECT:PHASE: an effect that is not at rest",
-    ),
-];
 
 /// End of all ticks and other counts of a recording: centuries. A file with larger ones is none of
 /// ours, however right its checksums are.
@@ -94,9 +57,6 @@ pub enum Step {
     Restart,
 }
 
-/// The columns of text; the others are numbers.
-const WORDS: [&str; 4] = ["phase", "event", "limit", "notes"];
-
 /// Names of the notes.
 pub(crate) const NOTES: [(u16, &str); 4] = [
     (SampleFlags::SETTLING, "settling"),
@@ -122,30 +82,14 @@ impl Row {
         }
     }
 
-    /// Appends it as a line; numbers read back to the same bits.
+    /// Appends it as a line of CSV; numbers read back to the same bits.
     pub fn append_to(&self, line: &mut String) {
-        let mut numbers = ryu::Buffer::new();
-        // Writing to a string does not fail.
-        let _ = write!(line, "{},", self.tick);
-        line.push_str(numbers.format(self.time_s));
-        let _ = write!(line, ",{},", self.count);
-        line.push_str(numbers.format(self.angle_rad));
-        line.push(',');
-        line.push_str(numbers.format(self.omega_rad_s));
-        let _ = write!(line, ",{},{},", self.phase(), self.event());
-        line.push_str(numbers.format(self.model_torque_nm));
-        line.push(',');
-        line.push_str(numbers.format(self.torque_nm));
-        line.push(',');
-        if let Some(current_a) = self.current_a {
-            line.push_str(numbers.format(current_a));
+        let mut separator = "";
+        for column in &COLUMNS {
+            line.push_str(separator);
+            column.append(self, line);
+            separator = ",";
         }
-        line.push(',');
-        if let Some(coil_a) = self.coil_a {
-            line.push_str(numbers.format(coil_a));
-        }
-        let _ = write!(line, ",{},{},", self.revision, self.flags.limit().name());
-        self.append_notes(line);
         line.push('\n');
     }
 
@@ -192,18 +136,19 @@ impl Row {
     /// Returns the row as an object, with the names of [`COLUMNS`] and the same numbers; what
     /// is empty in a line is null.
     pub fn to_json(&self) -> Value {
-        let mut line = String::new();
-        self.append_to(&mut line);
-        let cells = COLUMNS.iter().zip(line.trim_end().split(','));
-        let value = |(name, _): &(&str, &str), text: &str| match text.parse::<Number>() {
-            Ok(number) if !WORDS.contains(name) => Value::Number(number),
-            _ if text.is_empty() => Value::Null,
-            _ => Value::String(text.to_owned()),
+        let value = |column: &Column| {
+            let mut text = String::new();
+            column.append(self, &mut text);
+            let number = text.parse::<Number>().ok();
+            match column.cell {
+                _ if text.is_empty() => Value::Null,
+                Cell::Word(_) => Value::String(text),
+                // What is not finite is no number of JSON.
+                _ => number.map_or(Value::String(text), Value::Number),
+            }
         };
-        cells
-            .map(|(column, text)| (column.0.to_owned(), value(column, text)))
-            .collect::<Map<_, _>>()
-            .into()
+        let members = COLUMNS.iter().map(|column| (column.name.to_owned(), value(column)));
+        members.collect::<Map<_, _>>().into()
     }
 }
 
@@ -245,7 +190,7 @@ mod tests {
         let object = row.to_json();
         let mut line = String::new();
         row.append_to(&mut line);
-        for ((name, _), cell) in COLUMNS.iter().zip(line.trim_end().split(',')) {
+        for (Column { name, .. }, cell) in COLUMNS.iter().zip(line.trim_end().split(',')) {
             let text = match &object[name] {
                 Value::Null => String::new(),
                 Value::String(text) => text.clone(),

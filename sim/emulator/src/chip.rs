@@ -10,10 +10,12 @@
 //! to the reset. Not wired: timers to each other, pins to EXTI.
 
 pub(crate) mod bus;
+mod bus_map;
 mod bus_waits;
 pub(crate) mod clocks;
 pub(crate) mod memory;
 pub(crate) mod part;
+pub(crate) mod pins;
 mod timed_flash;
 pub(crate) mod waits;
 pub(crate) mod wires;
@@ -25,11 +27,11 @@ use crate::devices::otg::{self, Otg};
 use crate::devices::registers::AsRegisters;
 use crate::devices::usart::{Usart, Wires};
 use crate::image::Image;
-use crate::mcu::Pin;
-use crate::pins::{Mode, Pins};
+use crate::pins::{Mode, Pin};
 use bus::{Bus, Now};
 use clocks::{Clock, Rates};
 use part::{Gate, Library, Part, registers};
+use pins::Pins;
 use rsemu::core::device::Device;
 use rsemu::core::props::Props;
 use rsemu::core::wire::WireSource;

@@ -9,7 +9,7 @@
 //! A character takes half a tick longer than on the wire, which lets the two
 //! boards run one after the other.
 
-use crate::devices::usart::Character;
+use crate::character::Character;
 use crate::drive_board::{CommsSide, HALF};
 use crate::image::Image;
 use crate::mcu::{Mcu, Pin, Reset};

@@ -23,12 +23,14 @@
 //! that samples at the wrong time, and the rest of [`BoardError`].
 
 mod access;
+mod board_error;
 mod coil_driver;
 mod comms_side;
 mod encoder_edges;
 mod half_bridges;
 mod link_wires;
 mod native_comms;
+mod pin_map;
 mod wiring;
 
 use crate::image::Image;
@@ -39,13 +41,13 @@ use crepitus_device::drive::plausibility::TRIP_A;
 use crepitus_virtual_device::leg::{CurrentPath, Leg, Terminals};
 use encoder_edges::Edges;
 use half_bridges::Quiet;
-use wiring::{
+use pin_map::{
     BREAK, COIL, COIL_FAULT, COMMS_LINE, JOINT, LINE, LINE_BACK, MONITOR, MOTOR, SENSOR, SUPPLY,
 };
 
+pub use board_error::BoardError;
 pub use comms_side::CommsSide;
 pub use native_comms::NativeComms;
-pub use wiring::BoardError;
 
 /// Half a tick.
 pub const HALF: Time = Time::from_us(25);

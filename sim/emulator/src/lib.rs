@@ -33,6 +33,8 @@
 #![forbid(unsafe_code)]
 
 #[cfg(feature = "core")]
+mod character;
+#[cfg(feature = "core")]
 mod chip;
 #[cfg(feature = "core")]
 pub mod comms_board;
@@ -69,9 +71,9 @@ pub mod stm32f405;
 pub mod time;
 
 #[cfg(feature = "core")]
-pub use comms_board::CommsBoard;
+pub use character::Character;
 #[cfg(feature = "core")]
-pub use devices::usart::Character;
+pub use comms_board::CommsBoard;
 #[cfg(feature = "core")]
 pub use drive_board::DriveBoard;
 #[cfg(feature = "core")]

@@ -3,43 +3,11 @@
 //! The boards of this crate use this trait only; [`crate::Stm32f405`] is the
 //! one implementation, with the library `rsemu` behind it.
 
-use crate::devices::usart::Character;
+use crate::character::Character;
 use crate::pins::PinSetup;
 use crate::time::Time;
-use std::fmt;
 
-/// A pin: `Pin::new('B', 12)` is PB12.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Pin {
-    port: u8,
-    number: u8,
-}
-
-impl Pin {
-    /// A pin of a port from 'A' to 'I'.
-    pub const fn new(port: char, number: u8) -> Self {
-        Self {
-            port: (port as u8).wrapping_sub(b'A'),
-            number,
-        }
-    }
-
-    /// Its port, counted from A.
-    pub const fn port(self) -> usize {
-        self.port as usize
-    }
-
-    /// Its number in its port.
-    pub const fn number(self) -> u32 {
-        self.number as u32
-    }
-}
-
-impl fmt::Display for Pin {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "P{}{}", char::from(b'A' + self.port), self.number)
-    }
-}
+pub use crate::pins::Pin;
 
 /// Cause of a reset of a chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

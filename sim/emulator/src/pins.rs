@@ -1,11 +1,39 @@
-//! Setup of pins: what connects a peripheral to its pin.
+//! Pins and their setup: what connects a peripheral to its pin.
 
-use crate::chip::part::registers;
-use crate::mcu::Pin;
-use rsemu::core::space::{MemAttrs, MemOps};
-use rsemu::dev::stm32::gpio::Gpio;
 use std::fmt;
-use std::sync::Arc;
+
+/// A pin: `Pin::new('B', 12)` is PB12.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Pin {
+    port: u8,
+    number: u8,
+}
+
+impl Pin {
+    /// A pin of a port from 'A' to 'I'.
+    pub const fn new(port: char, number: u8) -> Self {
+        Self {
+            port: (port as u8).wrapping_sub(b'A'),
+            number,
+        }
+    }
+
+    /// Its port, counted from A.
+    pub const fn port(self) -> usize {
+        self.port as usize
+    }
+
+    /// Its number in its port.
+    pub const fn number(self) -> u32 {
+        self.number as u32
+    }
+}
+
+impl fmt::Display for Pin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "P{}{}", char::from(b'A' + self.port), self.number)
+    }
+}
 
 /// Mode of a pin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -70,52 +98,5 @@ impl fmt::Display for PinSetup {
             f.write_str(", open drain")?;
         }
         Ok(())
-    }
-}
-
-/// The pins of all ports.
-#[derive(Debug)]
-pub(crate) struct Pins(Vec<Arc<dyn MemOps>>);
-
-impl Pins {
-    pub(crate) fn new(ports: &[Arc<Gpio>]) -> Self {
-        Self(ports.iter().map(|port| registers(&**port)).collect())
-    }
-
-    fn word(&self, pin: Pin, offset: u64) -> u32 {
-        let mut bytes = [0; 4];
-        if let Some(port) = self.0.get(pin.port()) {
-            // A debugger's read of a register that there is cannot fail.
-            let _ = port.read(offset, &mut bytes, MemAttrs::DEBUG);
-        }
-        u32::from_le_bytes(bytes)
-    }
-
-    /// The mode of a pin.
-    pub(crate) fn mode(&self, pin: Pin) -> Mode {
-        let number = pin.number();
-        match self.word(pin, 0x00) >> (2 * number) & 3 {
-            0 => Mode::Input,
-            1 => Mode::Output,
-            2 => {
-                let functions = self.word(pin, 0x20 + 4 * u64::from(number / 8));
-                Mode::Alternate((functions >> (4 * (number % 8)) & 15).to_le_bytes()[0])
-            }
-            _ => Mode::Analog,
-        }
-    }
-
-    /// The setup of a pin.
-    pub(crate) fn setup(&self, pin: Pin) -> PinSetup {
-        let number = pin.number();
-        PinSetup {
-            mode: self.mode(pin),
-            pull: match self.word(pin, 0x0c) >> (2 * number) & 3 {
-                1 => Pull::Up,
-                2 => Pull::Down,
-                _ => Pull::None,
-            },
-            is_open_drain: self.word(pin, 0x04) >> number & 1 == 1,
-        }
     }
 }

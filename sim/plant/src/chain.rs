@@ -29,8 +29,8 @@
 //! step folded again; an end of a mode inside the step is located there, the
 //! step cut in two.
 
+use crate::coil::Coil;
 use crate::energy_balance::EnergyBalance;
-use crate::plant::Coil;
 use crepitus_model::Sense;
 
 /// A body of the chain, all referred to the joint.

@@ -20,6 +20,7 @@ pub mod assembly;
 pub mod boundary;
 pub mod branch;
 pub mod chain;
+mod coil;
 pub mod compliance;
 pub mod effect;
 pub mod effects;

@@ -5,6 +5,8 @@ use crate::boundary::{Boundary, MotionStep, Released, Stretch};
 use crate::chain::{Body, Chain, Flow, Impacts, Step, Verdict};
 use crate::energy_balance::EnergyBalance;
 
+pub use crate::coil::Coil;
+
 /// Ends of modes that are located within one step. What would follow is
 /// carried to the step's end in the mode then active.
 const ENDS_PER_STEP: u32 = 8;
@@ -30,16 +32,6 @@ pub struct Plant<A = Box<dyn Commanded>> {
     /// Bridge of the actuator on the shell.
     coil: Coil,
     start: EnergyBalance,
-}
-
-/// Bridge of the coil of the actuator on the shell.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Coil {
-    /// It holds this voltage, V.
-    Driven(f64),
-    /// It sleeps.
-    #[default]
-    Open,
 }
 
 /// A stretch solved.

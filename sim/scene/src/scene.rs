@@ -4,6 +4,7 @@ mod data_file;
 pub(crate) mod device;
 pub(crate) mod effects;
 mod motion;
+mod plausible_angles;
 mod recorded_motion;
 mod solver;
 pub(crate) mod stages;

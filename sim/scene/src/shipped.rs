@@ -1,8 +1,9 @@
 //! The scenes that ship, embedded in the program.
 
 use crate::error::{Origin, SceneError};
-use crate::scene::{Overrides, Scene, text_of};
-use crate::similar;
+use crate::scene::{Overrides, Scene};
+use crate::document::text_of;
+use crate::similar::{self, question};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -149,7 +150,7 @@ impl Source {
         }
         if !path.exists() {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-            let meant = similar::question(similar::scene(&stem));
+            let meant = question(similar(&stem));
             return Err(whole(
                 path,
                 format!(
@@ -248,6 +249,11 @@ pub fn scene(path: &Path, overrides: &Overrides) -> Result<Scene, SceneError> {
     Source::find(path)?.scene(overrides)
 }
 
+/// The most similar name of a scene that ships.
+pub fn similar(given: &str) -> Option<&'static str> {
+    similar::similar(SHIPPED.iter().map(|scene| scene.name), given)
+}
+
 /// An error of a whole file.
 fn whole(file: &Path, message: impl Into<String>) -> SceneError {
     SceneError {
@@ -261,6 +267,12 @@ fn whole(file: &Path, message: impl Into<String>) -> SceneError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_slip_of_the_finger_leads_to_the_name() {
+        assert_eq!(similar("slow-examinatoin"), Some("slow-examination"));
+        assert_eq!(similar("no-such-scene"), None);
+    }
 
     #[test]
     fn every_scene_in_the_folder_ships_and_reads() {

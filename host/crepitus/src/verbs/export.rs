@@ -136,7 +136,7 @@ fn csv(
     progress: &mut dyn FnMut(u64) -> bool,
 ) -> io::Result<u64> {
     let mut out = BufWriter::with_capacity(1 << 16, file);
-    let header: Vec<_> = COLUMNS.iter().map(|(name, _)| *name).collect();
+    let header: Vec<_> = COLUMNS.iter().map(|column| column.name).collect();
     let mut line = header.join(",") + "\n";
     let mut rows = 0;
     for (count, row) in (0_u64..).zip(recording.rows().map_err(io::Error::other)?) {

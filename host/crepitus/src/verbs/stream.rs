@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         status: StatusLine::beside_lines(),
     };
     if format == SampleFormat::Csv {
-        let header: Vec<_> = COLUMNS.iter().map(|(name, _)| *name).collect();
+        let header: Vec<_> = COLUMNS.iter().map(|column| column.name).collect();
         print(&(header.join(",") + "\n"))?;
     }
     let end = follow(

@@ -1,7 +1,8 @@
-//! Columns of the file: the same as those of CSV.
+//! Columns of the file, as the table of columns has them.
 
 use super::{GROUP_ROWS, other, words};
-use crate::row::{COLUMNS, END_TICK, Row, seconds};
+use crate::column::{COLUMNS, Cell, Column};
+use crate::row::{END_TICK, Row, seconds};
 use parquet::basic::{Compression, Encoding, ZstdLevel};
 use parquet::column::reader::{get_column_reader, get_typed_column_reader};
 use parquet::column::writer::ColumnWriter;
@@ -26,39 +27,31 @@ const ZSTD: i32 = 3;
 /// Columns whose values grow by about the same from row to row.
 const GROWING: [&str; 2] = ["tick", "count"];
 
-/// Columns of fractions.
-const FLOATS: [&str; 7] = [
-    "t_s",
-    "angle_rad",
-    "omega_rad_s",
-    "model_torque_nm",
-    "torque_nm",
-    "current_a",
-    "coil_current_a",
-];
+/// The type of a column.
+fn type_of(column: &Column) -> String {
+    let name = column.name;
+    match column.cell {
+        Cell::U64(..) => format!("required int64 {name} (INTEGER(64, false))"),
+        Cell::U32(..) => format!("required int32 {name} (INTEGER(32, false))"),
+        Cell::I32(..) => format!("required int32 {name}"),
+        Cell::F64(..) => format!("required double {name}"),
+        Cell::F32(..) => format!("required float {name}"),
+        Cell::Measured(..) => format!("optional float {name}"),
+        Cell::Word(..) => format!("required binary {name} (UTF8)"),
+    }
+}
 
-/// The type of each column.
-fn type_of(name: &str) -> &'static str {
-    match name {
-        "tick" => "required int64 tick (INTEGER(64, false))",
-        "t_s" => "required double t_s",
-        "count" => "required int32 count",
-        "angle_rad" => "required double angle_rad",
-        "omega_rad_s" => "required float omega_rad_s",
-        "model_torque_nm" => "required float model_torque_nm",
-        "torque_nm" => "required float torque_nm",
-        "current_a" => "optional float current_a",
-        "coil_current_a" => "optional float coil_current_a",
-        "revision" => "required int32 revision (INTEGER(32, false))",
-        "phase" => "required binary phase (UTF8)",
-        "event" => "required binary event (UTF8)",
-        "limit" => "required binary limit (UTF8)",
-        _ => "required binary notes (UTF8)",
+/// The encoding of a column, where it is not the usual one.
+fn encoding_of(column: &Column) -> Option<Encoding> {
+    match column.cell {
+        Cell::F64(..) | Cell::F32(..) | Cell::Measured(..) => Some(Encoding::BYTE_STREAM_SPLIT),
+        _ if GROWING.contains(&column.name) => Some(Encoding::DELTA_BINARY_PACKED),
+        _ => None,
     }
 }
 
 pub(super) fn schema() -> Result<Type> {
-    let fields: Vec<_> = COLUMNS.iter().map(|(name, _)| type_of(name)).collect();
+    let fields: Vec<_> = COLUMNS.iter().map(type_of).collect();
     parse_message_type(&format!("message crepitus {{ {}; }}", fields.join("; ")))
 }
 
@@ -70,14 +63,11 @@ pub(super) fn properties() -> Result<WriterProperties> {
         // Nothing in the file that our own reader does not check.
         .set_statistics_enabled(EnabledStatistics::None)
         .set_offset_index_disabled(true);
-    for (names, encoding) in [
-        (&GROWING[..], Encoding::DELTA_BINARY_PACKED),
-        (&FLOATS[..], Encoding::BYTE_STREAM_SPLIT),
-    ] {
-        for name in names {
+    for column in &COLUMNS {
+        if let Some(encoding) = encoding_of(column) {
             properties = properties
-                .set_column_encoding(ColumnPath::from(*name), encoding)
-                .set_column_dictionary_enabled(ColumnPath::from(*name), false);
+                .set_column_encoding(ColumnPath::from(column.name), encoding)
+                .set_column_dictionary_enabled(ColumnPath::from(column.name), false);
         }
     }
     Ok(properties.build())
@@ -99,31 +89,24 @@ pub(super) fn write<W: Write + Send>(
         });
         indices.push(index);
     }
-    for (name, _) in COLUMNS {
+    let mut words = 0;
+    for described in &COLUMNS {
         let Some(mut column) = group.next_column()? else {
             break;
         };
-        let word = |which: usize| -> Vec<ByteArray> {
-            indices
-                .iter()
-                .map(|index| known[*index][which].clone())
-                .collect()
-        };
-        match name {
-            "tick" => put::<Int64Type>(&mut column, rows, |row| row.tick.cast_signed())?,
-            "t_s" => put::<DoubleType>(&mut column, rows, |row| row.time_s)?,
-            "count" => put::<Int32Type>(&mut column, rows, |row| row.count)?,
-            "angle_rad" => put::<DoubleType>(&mut column, rows, |row| row.angle_rad)?,
-            "omega_rad_s" => put::<FloatType>(&mut column, rows, |row| row.omega_rad_s)?,
-            "model_torque_nm" => put::<FloatType>(&mut column, rows, |row| row.model_torque_nm)?,
-            "torque_nm" => put::<FloatType>(&mut column, rows, |row| row.torque_nm)?,
-            "revision" => put::<Int32Type>(&mut column, rows, |row| row.revision.cast_signed())?,
-            "current_a" => put_known(&mut column, rows, |row| row.current_a)?,
-            "coil_current_a" => put_known(&mut column, rows, |row| row.coil_a)?,
-            "phase" => text(&mut column, &word(0))?,
-            "event" => text(&mut column, &word(1))?,
-            "limit" => text(&mut column, &word(2))?,
-            _ => text(&mut column, &word(3))?,
+        let column_ref = &mut column;
+        match described.cell {
+            Cell::U64(get, _) => put::<Int64Type>(column_ref, rows, |row| get(row).cast_signed())?,
+            Cell::U32(get, _) => put::<Int32Type>(column_ref, rows, |row| get(row).cast_signed())?,
+            Cell::I32(get, _) => put::<Int32Type>(column_ref, rows, get)?,
+            Cell::F64(get, _) => put::<DoubleType>(column_ref, rows, get)?,
+            Cell::F32(get, _) => put::<FloatType>(column_ref, rows, get)?,
+            Cell::Measured(get, _) => put_known(column_ref, rows, get)?,
+            Cell::Word(_) => {
+                let values = indices.iter().map(|index| known[*index][words].clone());
+                text(column_ref, &values.collect::<Vec<_>>())?;
+                words += 1;
+            }
         }
         column.close()?;
     }
@@ -178,34 +161,30 @@ pub(super) fn read<R: ChunkReader + 'static>(
     }
     let mut rows = vec![Row::default(); count];
     let mut texts: [Vec<ByteArray>; 4] = [const { Vec::new() }; 4];
-    for (at, (name, _)) in COLUMNS.iter().enumerate() {
-        let column = Column {
+    let mut words = texts.iter_mut();
+    for (at, described) in COLUMNS.iter().enumerate() {
+        let column = Chunk {
             bytes,
             group,
             at,
             count,
         };
-        match *name {
-            "tick" => column.get::<Int64Type>(&mut rows, |row, v| row.tick = v.cast_unsigned())?,
-            "t_s" => column.get::<DoubleType>(&mut rows, |row, v| row.time_s = v)?,
-            "count" => column.get::<Int32Type>(&mut rows, |row, v| row.count = v)?,
-            "angle_rad" => column.get::<DoubleType>(&mut rows, |row, v| row.angle_rad = v)?,
-            "omega_rad_s" => column.get::<FloatType>(&mut rows, |row, v| row.omega_rad_s = v)?,
-            "model_torque_nm" => {
-                column.get::<FloatType>(&mut rows, |row, v| row.model_torque_nm = v)?;
+        let rows = &mut rows;
+        match described.cell {
+            Cell::U64(_, set) => {
+                column.get::<Int64Type>(rows, |row, v| set(row, v.cast_unsigned()))?;
             }
-            "torque_nm" => column.get::<FloatType>(&mut rows, |row, v| row.torque_nm = v)?,
-            "revision" => {
-                column.get::<Int32Type>(&mut rows, |row, v| row.revision = v.cast_unsigned())?;
+            Cell::U32(_, set) => {
+                column.get::<Int32Type>(rows, |row, v| set(row, v.cast_unsigned()))?;
             }
-            "current_a" => column.get::<FloatType>(&mut rows, |row, v| row.current_a = Some(v))?,
-            "coil_current_a" => {
-                column.get::<FloatType>(&mut rows, |row, v| row.coil_a = Some(v))?;
+            Cell::I32(_, set) => column.get::<Int32Type>(rows, set)?,
+            Cell::F64(_, set) => column.get::<DoubleType>(rows, set)?,
+            Cell::F32(_, set) | Cell::Measured(_, set) => column.get::<FloatType>(rows, set)?,
+            Cell::Word(_) => {
+                if let Some(texts) = words.next() {
+                    *texts = column.values::<ByteArrayType>()?.0;
+                }
             }
-            "phase" => texts[0] = column.values::<ByteArrayType>()?.0,
-            "event" => texts[1] = column.values::<ByteArrayType>()?.0,
-            "limit" => texts[2] = column.values::<ByteArrayType>()?.0,
-            _ => texts[3] = column.values::<ByteArrayType>()?.0,
         }
     }
     set_flags(&mut rows, &texts)?;
@@ -254,14 +233,14 @@ fn short() -> io::Error {
     io::Error::new(io::ErrorKind::UnexpectedEof, "a column has too few values")
 }
 
-struct Column<'g, R> {
+struct Chunk<'g, R> {
     bytes: &'g Arc<R>,
     group: &'g RowGroupMetaData,
     at: usize,
     count: usize,
 }
 
-impl<R: ChunkReader + 'static> Column<'_, R> {
+impl<R: ChunkReader + 'static> Chunk<'_, R> {
     /// Its values, and for each row whether it has one.
     fn values<T: DataType>(&self) -> io::Result<(Vec<T::T>, Vec<i16>)> {
         let chunk = self.group.columns().get(self.at).ok_or_else(short)?;

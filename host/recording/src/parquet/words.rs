@@ -1,5 +1,6 @@
 //! The columns of words: phase, event, limit, notes.
 
+use crate::column::{COLUMNS, Cell};
 use crate::row::{HELD_BACK, NOTES, Row};
 use crepitus_model::render::effects::Phases;
 use crepitus_protocol::LimitReason;
@@ -9,12 +10,17 @@ use std::io;
 /// Phase, event, limit and notes.
 pub(super) type Words = [String; 4];
 
-/// The words of a row.
+/// The words of a row, in the order of their columns.
 pub(super) fn of(row: &Row) -> Words {
-    let mut notes = String::new();
-    row.append_notes(&mut notes);
-    let limit = row.flags.limit().name();
-    [row.phase(), row.event(), limit, &notes].map(str::to_owned)
+    let mut words = Words::default();
+    let appends = COLUMNS.iter().filter_map(|column| match column.cell {
+        Cell::Word(append) => Some(append),
+        _ => None,
+    });
+    for (word, append) in words.iter_mut().zip(appends) {
+        append(row, word);
+    }
+    words
 }
 
 /// Reads flags and phases of effects back from their words.

@@ -1,6 +1,7 @@
 //! The peripheral bus: finds the part at an address, brings it up to date,
 //! and detects what the access has changed.
 
+use super::bus_map::AHB;
 use super::bus_waits;
 use super::clocks::Rates;
 use super::part::{PAGE, Part, lock};
@@ -15,10 +16,6 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
-
-/// First address of the parts on the AHB. Below, on an APB, there are only words:
-/// the bridge repeats half a word, or a byte, over all of it (RM0090 2.1).
-pub(super) const AHB: u32 = 0x4002_0000;
 
 /// `FLASH_ACR`, which decides how long the core waits for flash.
 pub(crate) const FLASH_ACR: u32 = 0x4002_3c00;

@@ -14,11 +14,8 @@
 //!
 //! A store waits like a load, as if the write buffer was always full.
 
-use super::bus::AHB;
+use super::bus_map::{AHB, APB2};
 use super::clocks::{Clock, Rates};
-
-/// Addresses from here to [`AHB`] are on APB2, below on APB1.
-const APB2: u32 = 0x4001_0000;
 
 const ARBITRATION: u64 = 1;
 const DATA_PHASE: u64 = 1;

@@ -108,8 +108,9 @@ impl Memory {
 
     /// Counts waits of the core for flash from now on.
     pub(crate) fn time_flash(&self, chip: &Chip) {
-        let flash = chip.flash.region();
-        let timed = Arc::new(TimedFlash::new(&flash, chip.bus.waits.clone()));
+        let array = AddressSpace::new("flash", 32);
+        map(&array, &chip.flash.region(), 0);
+        let timed = Arc::new(TimedFlash::new(array, chip.bus.waits.clone()));
         for base in [0, u64::from(FLASH)] {
             let region = Region::io("timed flash", FLASH_BYTES, timed.clone());
             let mapping = Mapping::new(region, base).with_priority(1);
@@ -137,7 +138,7 @@ fn window(chip: &Chip, base: u32, bytes: u64) -> RegionRef {
     Arc::new(Region::io("peripherals", bytes, Arc::new(window)))
 }
 
-pub(super) fn map(space: &AddressSpace, region: &RegionRef, base: u64) {
+fn map(space: &AddressSpace, region: &RegionRef, base: u64) {
     let mapped = space.topology().map(region.clone(), base);
     mapped.expect("regions do not overlap");
 }

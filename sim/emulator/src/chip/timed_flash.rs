@@ -3,7 +3,7 @@
 use super::waits::Waits;
 use rsemu::core::error::BusError;
 use rsemu::core::space::{
-    AccessConstraints, AccessPurpose, AddressSpace, MemAttrs, MemOps, MemResult, RegionRef,
+    AccessConstraints, AccessPurpose, AddressSpace, MemAttrs, MemOps, MemResult,
 };
 use rsemu::core::value::Width;
 use std::sync::Arc;
@@ -16,9 +16,7 @@ pub(crate) struct TimedFlash {
 }
 
 impl TimedFlash {
-    pub(crate) fn new(flash: &RegionRef, waits: Arc<Waits>) -> Self {
-        let array = AddressSpace::new("flash", 32);
-        super::memory::map(&array, flash, 0);
+    pub(crate) fn new(array: AddressSpace, waits: Arc<Waits>) -> Self {
         Self { array, waits }
     }
 }

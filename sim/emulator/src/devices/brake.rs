@@ -10,8 +10,8 @@
 //! over CCER and CCMR; [`Brake::uses_unmodelled_features`] reports AOE.
 
 use crate::chip::part::{Peripheral, lock};
-use crate::mcu::Pin;
-use crate::pins::{Mode, Pins};
+use crate::chip::pins::Pins;
+use crate::pins::{Mode, Pin};
 use rsemu::core::space::{MemAttrs, MemOps, MemResult};
 use rsemu::core::wire::{Level, WireSource};
 use std::fmt;

@@ -11,11 +11,12 @@
 //! half duplex; [`Usart::uses_unmodelled_features`] reports their use.
 
 use super::registers::Words;
+use crate::character::Character;
 use crate::chip::bus::Now;
 use crate::chip::clocks::{Clock, Rates};
 use crate::chip::part::{Peripheral, lock};
-use crate::mcu::Pin;
-use crate::pins::{Mode, Pins};
+use crate::chip::pins::Pins;
+use crate::pins::{Mode, Pin};
 use rsemu::core::wire::Level;
 use rsemu::dev::stm32::dma::Dma;
 use std::collections::VecDeque;
@@ -46,17 +47,6 @@ const ASKS_2: u32 = 3 << 12 | 1 << 14 | 1 << 11;
 
 /// Bits of a character: start, eight, stop.
 const BITS: u64 = 10;
-
-/// A character on the wire.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Character {
-    /// End of its stop bit, in units of time.
-    pub at: u64,
-    /// Its byte.
-    pub byte: u8,
-    /// Its stop bit is invalid.
-    pub is_broken: bool,
-}
 
 #[derive(Debug, Default)]
 struct State {

@@ -5,10 +5,11 @@
 //! both high brake, both low is asleep, and never within a period that drives. The
 //! voltage is the mean of a period. Its nSLEEP is the gate of both enable lines.
 
+use super::board_error::BoardError;
 use super::half_bridges::Quiet;
-use super::wiring::{BoardError, COIL_IN1, COIL_IN2};
-use crate::mcu::{Mcu, Pin};
-use crate::pins::{Mode, Pull};
+use super::pin_map::{COIL_IN1, COIL_IN2};
+use crate::mcu::Mcu;
+use crate::pins::{Mode, Pin, Pull};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
 

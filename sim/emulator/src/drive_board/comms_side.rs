@@ -1,6 +1,6 @@
 //! The other end of the drive's link.
 
-use crate::devices::usart::Character;
+use crate::character::Character;
 use crate::time::Time;
 
 /// Comms, as the drive's board sees it.

@@ -16,9 +16,10 @@
 //! to the timer, what its port says. The voltage is the mean of a period,
 //! without dead time.
 
-use super::wiring::{BoardError, HALF_A, HALF_B};
-use crate::mcu::{Mcu, Pin};
-use crate::pins::{Mode, Pull};
+use super::board_error::BoardError;
+use super::pin_map::{HALF_A, HALF_B};
+use crate::mcu::Mcu;
+use crate::pins::{Mode, Pin, Pull};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
 use crepitus_virtual_device::leg::Terminals;

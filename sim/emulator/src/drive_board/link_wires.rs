@@ -1,6 +1,6 @@
 //! The two wires of the link, byte by byte.
 
-use crate::devices::usart::Character;
+use crate::character::Character;
 use crate::time::Time;
 use crepitus_protocol::frame::Frame;
 

@@ -3,7 +3,7 @@
 use super::CommsSide;
 use super::HALF;
 use super::link_wires::{Down, Up};
-use crate::devices::usart::Character;
+use crate::character::Character;
 use crate::time::Time;
 use crepitus_device::comms::{Boot, Comms, Inputs};
 use crepitus_device::self_test::SelfTest;

@@ -4,41 +4,17 @@
 //! that the board names every mismatch, from the time on at which the
 //! bridge's timer runs: that is the last that the image starts.
 
+use super::board_error::BoardError;
 use super::coil_driver;
 use super::half_bridges::{self, Quiet};
-use crate::mcu::{Mcu, Pin, Sampling};
-use crate::pins::{Mode, PinSetup, Pull};
+use super::pin_map::{
+    BREAK, COIL, COIL_FAULT, COIL_IN1, COIL_IN2, COMMS_LINE, HALF_A, HALF_B, JOINT, LINE,
+    LINE_BACK, MONITOR, MOTOR, SENSOR, SUPPLY,
+};
+use crate::mcu::{Mcu, Sampling};
+use crate::pins::{Mode, Pin, Pull};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
-
-/// Upper and lower switch of each half of the bridge.
-pub(super) const HALF_A: [Pin; 2] = [Pin::new('A', 8), Pin::new('B', 13)];
-pub(super) const HALF_B: [Pin; 2] = [Pin::new('A', 9), Pin::new('B', 14)];
-
-/// The drive's enable line: what drives it, and where it is read back.
-pub(super) const LINE: Pin = Pin::new('B', 0);
-pub(super) const LINE_BACK: Pin = Pin::new('B', 1);
-
-/// Low: overcurrent.
-pub(super) const BREAK: Pin = Pin::new('B', 12);
-
-/// The enable line of comms, at its gate.
-pub(super) const COMMS_LINE: Pin = Pin::new('B', 10);
-
-/// The amplifiers of the two current paths.
-pub(super) const SENSOR: Pin = Pin::new('C', 0);
-pub(super) const MONITOR: Pin = Pin::new('C', 1);
-
-/// Supply, temperature of the motor, and the joint's own sensor.
-pub(super) const SUPPLY: Pin = Pin::new('C', 3);
-pub(super) const MOTOR: Pin = Pin::new('A', 2);
-pub(super) const JOINT: Pin = Pin::new('C', 2);
-
-/// The driver of the coil: its inputs, its nFAULT, and the amplifier of its current.
-pub(super) const COIL_IN1: Pin = Pin::new('C', 8);
-pub(super) const COIL_IN2: Pin = Pin::new('C', 9);
-pub(super) const COIL_FAULT: Pin = Pin::new('A', 6);
-pub(super) const COIL: Pin = Pin::new('A', 3);
 
 /// The converters, from 1 on, and the pins that they convert around the middle of a
 /// tick.
@@ -159,99 +135,6 @@ const WIRES: [Wire; 21] = {
         ),
     ]
 };
-
-/// A mismatch between the image and the board's wiring.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum BoardError {
-    /// A pin is not set up for what it is wired to.
-    #[error("{pin} is {is}; its wire, {to}, needs {needs}")]
-    Pin {
-        /// The pin.
-        pin: Pin,
-        /// Its setup.
-        is: PinSetup,
-        /// The other end of its wire.
-        to: &'static str,
-        /// Mode and pull that this needs.
-        needs: String,
-    },
-    /// Both switches of a half are closed at once: the timer asks for it,
-    /// whether or not the gates are open.
-    #[error("shoot-through: both switches of half {half} are closed at once")]
-    ShootThrough {
-        /// 'A' or 'B'.
-        half: char,
-    },
-    /// Undefined level at a gate.
-    #[error("a switch of half {half} is neither driven nor pulled down")]
-    UndefinedSwitch {
-        /// 'A' or 'B'.
-        half: char,
-    },
-    /// A switch is closed although the timer's outputs are off.
-    #[error("a switch of half {half} is closed although the outputs of TIM1 are off")]
-    ClosedAtRest {
-        /// 'A' or 'B'.
-        half: char,
-    },
-    /// The timer does not make the bridge's PWM.
-    #[error("TIM1 does not make the PWM of the bridge: {what}")]
-    Pwm {
-        /// Description of the problem.
-        what: &'static str,
-    },
-    /// The timer does not drive the coil's driver as it should.
-    #[error("TIM8 does not make the PWM of the coil's driver: {what}")]
-    CoilPwm {
-        /// Description of the problem.
-        what: &'static str,
-    },
-    /// The dead time does not suit the bridge.
-    #[error("a dead time of {ns} ns; the bridge needs 200 to 500 ns")]
-    DeadTime {
-        /// Dead time to which the timer is set, ns.
-        ns: u64,
-    },
-    /// A converter samples another channel than one of its inputs.
-    #[error("ADC{converter} samples channel {channel}, to which none of its inputs is wired")]
-    Channel {
-        /// The converter, from 1 on.
-        converter: u32,
-        /// The channel.
-        channel: u32,
-    },
-    /// The samples of a current are not centred on the middle of the tick.
-    #[error(
-        "ADC{converter} samples {off_ns} ns off the middle of the tick; at most 100 ns are allowed"
-    )]
-    SamplingTime {
-        /// The converter, from 1 on.
-        converter: u32,
-        /// Time between the middle of the tick and the middle of its samplings, ns.
-        off_ns: u64,
-    },
-    /// A switch opens or closes while a converter samples or converts.
-    #[error("a switch of the bridge switches while ADC{converter} samples or converts")]
-    SwitchingWhileSampling {
-        /// The converter, from 1 on.
-        converter: u32,
-    },
-    /// The link has another speed.
-    #[error("a character of USART6 takes {units} units of time; one of the link takes 800")]
-    Baud {
-        /// Duration of a character as the program has set it, in units of time.
-        units: u64,
-    },
-    /// The counter does not follow the encoder.
-    #[error("TIM5 has counted {counted} while the encoder turned by {turned}")]
-    Encoder {
-        /// Counts of the timer in half a tick.
-        counted: i32,
-        /// Counts of the encoder.
-        turned: i32,
-    },
-}
 
 /// Reports every pin and every switch that does not match.
 pub(super) fn check(mcu: &Stm32f405, mut report: impl FnMut(BoardError)) {

@@ -1,7 +1,7 @@
 //! The chip as a microcontroller.
 
 use super::{CORE, Stm32f405};
-use crate::devices::usart::Character;
+use crate::character::Character;
 use crate::mcu::{Access, Mcu, Pin, Reset, Sampling, Watch};
 use crate::pins::PinSetup;
 use crate::state_hash::Hash;

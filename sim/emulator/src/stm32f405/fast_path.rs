@@ -10,10 +10,13 @@
 mod accesses;
 mod arithmetic;
 mod code;
+mod executor;
+mod float_registers;
 mod floats;
 mod instructions;
 mod memory;
 mod permissions;
+mod plain;
 mod timing;
 
 use crate::chip::Chip;
@@ -21,8 +24,8 @@ use crate::chip::memory::Memory;
 use crate::chip::waits::Waits;
 use crate::chip::wires::Raised;
 use code::Code;
-use floats::Floats;
-use instructions::Executor;
+use executor::Executor;
+use float_registers::Floats;
 use memory::Windows;
 use permissions::Permissions;
 use rsemu::cpu::arm::v7m::sys::{Exception, Sys, control, fpccr};

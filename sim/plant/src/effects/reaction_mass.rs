@@ -28,11 +28,11 @@
 //! inductance of the same data sheet; bumpers are an estimate.
 
 use crate::chain::{Body, Chain, Push, Step, Weight};
+use crate::coil::Coil;
 use crate::effect::{Context, Effect, Given, Mounted, Part, numbers};
 use crate::effects::limb::STANDARD_GRAVITY;
 use crate::energy_balance::{Account, EnergyBalance};
 use crate::load::{Load, Loaded};
-use crate::plant::Coil;
 use crepitus_model::SettingsError;
 use crepitus_model::parameters::{Choice, ParameterSpec, Tabled};
 use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;

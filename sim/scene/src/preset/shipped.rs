@@ -109,6 +109,12 @@ pub fn find(name: &str) -> Option<&'static Preset> {
     PRESETS.iter().find(|preset| preset.name == name)
 }
 
+/// The most similar name of a preset that ships.
+pub fn similar(given: &str) -> Option<&'static str> {
+    let names = shipped().iter().map(|preset| preset.name.as_str());
+    similar::similar(names, given)
+}
+
 /// The stick-slip joint of a preset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {

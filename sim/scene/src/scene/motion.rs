@@ -1,15 +1,12 @@
 //! The `[motion]` table.
 
 use super::data_file::DataFile;
+use super::plausible_angles::{ANY_DEG, ANY_RAD};
 use super::recorded_motion::recording;
 use crate::document::{Range, Section};
 use crate::error::SceneError;
 use crepitus_plant::Motion;
 use crepitus_plant::motion::{Strokes, VelocityKnot};
-
-/// Angles and velocities of any joint that this could mean.
-const ANY_RAD: Range = Range::closed(-1e6, 1e6);
-pub(super) const ANY_DEG: Range = Range::closed(-6e7, 6e7);
 
 crepitus_model::named! {
     /// The kinds of motion.

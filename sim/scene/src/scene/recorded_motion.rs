@@ -7,7 +7,7 @@
 //! samples; `sign` alone changes no bit but the sign's.
 
 use super::data_file::DataFile;
-use super::motion::ANY_DEG;
+use super::plausible_angles::ANY_DEG;
 use crate::document::{Range, Section, Value};
 use crate::error::SceneError;
 use crepitus_plant::Motion;

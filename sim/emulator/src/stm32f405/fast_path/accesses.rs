@@ -3,7 +3,7 @@
 //! All that can end the fast path comes before the first store.
 
 use super::arithmetic::{extended, offset};
-use super::instructions::Executor;
+use super::executor::Executor;
 use super::permissions::is_one_piece;
 use rsemu::cpu::arm::v7m::isa::{Insn, MemOffset};
 use rsemu::cpu::arm::v7m::sys::{Access, ccr};

@@ -1,6 +1,6 @@
 //! Decoded code of flash.
 
-use super::instructions::is_plain;
+use super::plain::is_plain;
 use crate::devices::flash::Flash;
 use crate::image::{FLASH, FLASH_BYTES};
 use rsemu::cpu::arm::v7m::isa::{Insn, decode, is_32bit};

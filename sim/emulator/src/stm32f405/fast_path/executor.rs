@@ -30,6 +30,7 @@ pub(super) struct Executor<'a> {
 
 impl Executor<'_> {
     /// Goes on at an address.
+    #[inline]
     pub(super) fn branch(&mut self, target: u32) {
         self.r[15] = target & !1;
         self.has_branched = true;
@@ -38,6 +39,7 @@ impl Executor<'_> {
 
     /// Goes on at an address from a register or from memory; `None` if that is an
     /// exception's return, or faults.
+    #[inline]
     pub(super) fn jump(&mut self, address: u32) -> Option<()> {
         if !is_jump(address) {
             return None;
@@ -46,30 +48,41 @@ impl Executor<'_> {
         Some(())
     }
 
+    /// Value of a register.
+    #[inline]
     pub(super) fn get(&self, register: u8) -> u32 {
         self.r[usize::from(register & 15)]
     }
 
     /// Sets a register other than the program counter.
+    #[inline]
     pub(super) fn set(&mut self, register: u8, value: u32) {
         if register & 15 != 15 {
             self.r[usize::from(register & 15)] = value;
         }
     }
 
+    /// Returns whether a flag is set.
+    #[inline]
     pub(super) fn flag(&self, mask: u32) -> bool {
         self.xpsr & mask != 0
     }
 
+    /// Sets or clears a flag.
+    #[inline]
     pub(super) fn set_flag(&mut self, mask: u32, is_set: bool) {
         self.xpsr = self.xpsr & !mask | if is_set { mask } else { 0 };
     }
 
+    /// Sets N and Z by a result.
+    #[inline]
     pub(super) fn set_nz(&mut self, value: u32) {
         self.set_flag(xpsr::N, value >> 31 == 1);
         self.set_flag(xpsr::Z, value == 0);
     }
 
+    /// Sets the state of an IT block.
+    #[inline]
     pub(super) fn set_it_state(&mut self, it: u8) {
         let it = u32::from(it);
         self.xpsr = self.xpsr & !xpsr::IT_MASK | it >> 2 << 10 | (it & 3) << 25;

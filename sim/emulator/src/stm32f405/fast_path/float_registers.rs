@@ -15,6 +15,8 @@ pub(super) struct Floats {
 }
 
 impl Floats {
+    /// Value of a register.
+    #[inline]
     pub(super) fn get(&mut self, core: &ArmV7m, register: u8) -> u32 {
         let bit = 1 << (register & 31);
         if self.known & bit == 0 {
@@ -24,6 +26,8 @@ impl Floats {
         self.s[usize::from(register & 31)]
     }
 
+    /// Sets a register.
+    #[inline]
     pub(super) fn set(&mut self, register: u8, value: u32) {
         let bit = 1 << (register & 31);
         self.known |= bit;
@@ -31,10 +35,14 @@ impl Floats {
         self.s[usize::from(register & 31)] = value;
     }
 
+    /// Value of FPSCR.
+    #[inline]
     pub(super) fn fpscr(&mut self, core: &ArmV7m) -> u32 {
         *self.fpscr.get_or_insert_with(|| core.fpscr())
     }
 
+    /// Sets FPSCR.
+    #[inline]
     pub(super) fn set_fpscr(&mut self, value: u32) {
         self.fpscr_changed |= self.fpscr != Some(value);
         self.fpscr = Some(value);

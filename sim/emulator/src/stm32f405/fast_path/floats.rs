@@ -5,10 +5,11 @@
 //! the library.
 
 use super::arithmetic::offset;
-use super::instructions::Executor;
+use super::executor::Executor;
+use super::plain::LIST;
 use rsemu::cpu::arm::v7m::fp::{self, fpscr};
 use rsemu::cpu::arm::v7m::fpisa::{DataOp, FpInsn, UnaryOp};
-use rsemu::cpu::arm::v7m::{ArmV7m, xpsr};
+use rsemu::cpu::arm::v7m::xpsr;
 use rsemu::float::{Flags, Round};
 
 /// Cycles besides the instruction's one: of a division or a root, and of a product

@@ -4,17 +4,14 @@
 //! here: `None` leaves the core as it was.
 
 use super::Executed;
-use super::arithmetic::{extended, is_jump, it_state, low_word, offset, shift, sum};
+use super::arithmetic::{extended, it_state, low_word, offset, shift, sum};
 use super::code::{Code, Decoded};
-use super::floats::{self, Floats};
-use super::memory::Windows;
-use super::permissions::Permissions;
-use super::timing::Timing;
+use super::executor::Executor;
 use rsemu::cpu::arm::v7m::isa::{
-    BitfieldOp, Cond, DpOp, ExtendOp, HintOp, Insn, MiscOp, Operand, Size,
+    BitfieldOp, Cond, DpOp, ExtendOp, Insn, MiscOp, Operand, Size,
 };
 use rsemu::cpu::arm::v7m::sys::ccr;
-use rsemu::cpu::arm::v7m::{ArmV7m, xpsr};
+use rsemu::cpu::arm::v7m::xpsr;
 
 impl Executor<'_> {
     /// Executes instructions until these cycles have passed, or one is not plain.

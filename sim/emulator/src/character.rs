@@ -1,0 +1,12 @@
+//! A character on the wire of the link.
+
+/// A character on the wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Character {
+    /// End of its stop bit, in units of time.
+    pub at: u64,
+    /// Its byte.
+    pub byte: u8,
+    /// Its stop bit is invalid.
+    pub is_broken: bool,
+}

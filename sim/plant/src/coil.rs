@@ -1,0 +1,11 @@
+//! Bridge of the coil of the actuator on the shell.
+
+/// Bridge of the coil of the actuator on the shell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Coil {
+    /// It holds this voltage, V.
+    Driven(f64),
+    /// It sleeps.
+    #[default]
+    Open,
+}
