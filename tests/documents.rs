@@ -222,7 +222,11 @@ fn packages_use_those_that_the_architecture_names() {
     let page = page("architecture.md");
     let (_, table) = page.split_once("| folder | what it is | uses |\n").unwrap();
     let mut folders = BTreeSet::new();
-    for row in table.lines().skip(1).take_while(|line| line.starts_with('|')) {
+    for row in table
+        .lines()
+        .skip(1)
+        .take_while(|line| line.starts_with('|'))
+    {
         let cells: Vec<_> = row.split('|').map(str::trim).collect();
         let [_, which, _, used, _] = cells[..] else {
             panic!("{row}");

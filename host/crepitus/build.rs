@@ -6,12 +6,13 @@ use std::process::Command;
 /// Inputs that the name depends on: each commit and each checkout adds a line to the log of `HEAD`, and an
 /// edit of what the program is built from makes it dirty. The index is left out: `git describe`
 /// itself writes it, so that every second build would be done twice.
-const INPUTS: [&str; 14] = [
+const INPUTS: [&str; 15] = [
     ".git/logs/HEAD",
     "Cargo.lock",
     "Cargo.toml",
     "device",
     "docs/faults.md",
+    "docs/generated/faults.md",
     "firmware/seal",
     "host",
     "lessons",

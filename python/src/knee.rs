@@ -1,9 +1,10 @@
 //! Knees for a device: a preset, or the effects of a scene.
 
 use crate::errors;
-use crepitus_scene::preset::{self, Knee};
-use crepitus_scene::shipped::Shipped;
-use crepitus_scene::{Overrides, Preset, similar};
+use crepitus_scene::preset;
+use crepitus_scene::shipped::{self, Shipped};
+use crepitus_scene::similar::question;
+use crepitus_scene::{Knee, Overrides, Preset};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::path::Path;
@@ -23,10 +24,10 @@ pub(crate) fn knee(what: &Path) -> PyResult<Knee> {
         return Ok(Knee::Scene(Box::new(scene)));
     }
     let name = what.to_string_lossy();
-    let meant = similar::preset(&name).or_else(|| similar::scene(&name));
+    let meant = preset::similar_name(&name).or_else(|| shipped::similar_name(&name));
     Err(PyValueError::new_err(format!(
         "{name}: there is no such file, no such preset and no such scene{}: crepitus.presets() and \
          crepitus.scenes() list those that ship",
-        similar::question(meant)
+        question(meant)
     )))
 }

@@ -1,4 +1,4 @@
-//! What checks the project itself.
+//! Checks of the project itself.
 //!
 //! | to find | look in |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! What people see and hear of a run.
+//! Tables, charts, reports and sound: a run as people see and hear it.
 //!
 //! | to find | look in |
 //! |---|---|

@@ -1,43 +1,46 @@
-//! A fault's page of the book, for the panel: `docs/faults.md`, embedded.
+//! A fault's pages of the book, for the panel: `docs/generated/faults.md` and `docs/faults.md`, embedded.
 
 use serde_json::{Value, json};
 
-const FAULTS: &str = include_str!("../../../docs/faults.md");
+const TABLES: &str = include_str!("../../../docs/generated/faults.md");
+const TEXTS: &str = include_str!("../../../docs/faults.md");
+
+/// The title and the lines of a fault's section of a page.
+fn section(page: &'static str, code: u8) -> Option<(&'static str, Vec<&'static str>)> {
+    let begin = format!("### {code} ");
+    let mut lines = page.lines();
+    let title = lines.by_ref().find_map(|line| line.strip_prefix(&begin))?;
+    Some((
+        title,
+        lines.take_while(|line| !line.starts_with('#')).collect(),
+    ))
+}
 
 /// The section of a fault: rows of its table, and paragraphs; none if there is no such
 /// fault.
 pub(crate) fn fault(code: u8) -> Option<Value> {
-    let begin = format!("### {code} ");
-    let mut lines = FAULTS.lines();
-    let title = lines.by_ref().find_map(|line| line.strip_prefix(&begin))?;
-    let section = lines.take_while(|line| !line.starts_with('#'));
+    let (title, table) = section(TABLES, code)?;
     let mut rows = Vec::new();
-    let mut paragraphs: Vec<String> = Vec::new();
-    let mut is_open = false;
-    for line in section.filter(|line| !line.starts_with("<!--")) {
+    for line in table {
         let cells: Vec<_> = line.split('|').map(str::trim).collect();
-        match cells.as_slice() {
-            ["", key, value, ""] => {
-                let is_rule = key.is_empty() || key.starts_with('-');
-                if !is_rule {
-                    rows.push(json!([key, plain(value)]));
-                }
-            }
-            _ if line.trim().is_empty() => is_open = false,
-            _ => {
-                if !is_open {
-                    paragraphs.push(String::new());
-                }
-                is_open = true;
-                if let Some(paragraph) = paragraphs.last_mut() {
-                    if !paragraph.is_empty() {
-                        paragraph.push(' ');
-                    }
-                    paragraph.push_str(&plain(line));
-                }
-            }
+        if let ["", key, value, ""] = cells[..]
+            && !key.is_empty()
+            && !key.starts_with('-')
+        {
+            rows.push(json!([key, plain(value)]));
         }
     }
+    let (_, text) = section(TEXTS, code)?;
+    // Not the link to the table.
+    let text: Vec<_> = text
+        .iter()
+        .copied()
+        .filter(|line| !line.starts_with('['))
+        .collect();
+    let paragraphs: Vec<_> = (text.split(|line| line.trim().is_empty()))
+        .filter(|lines| !lines.is_empty())
+        .map(|lines| plain(&lines.join(" ")))
+        .collect();
     Some(json!({ "title": title, "rows": rows, "paragraphs": paragraphs }))
 }
 

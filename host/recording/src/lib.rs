@@ -39,8 +39,8 @@ mod shaft;
 
 pub use arming::ArmingPushes;
 pub use books::{Begin, Books, Cause, Gap, Recount, Segment, Totals};
-pub use damage::Damage;
 pub use column::{COLUMNS, Cell, Column};
+pub use damage::Damage;
 pub use ending::{EndCause, Ending};
 pub use findings::Findings;
 pub use log::disk::{Background, Disk};

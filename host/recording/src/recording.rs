@@ -14,7 +14,6 @@ use crate::parquet;
 use crate::row::{Row, seconds};
 use crate::samples::Samples;
 use crepitus_files::input;
-use crepitus_protocol::TICK_S;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};

@@ -1,10 +1,8 @@
 //! A sample as a row.
 
-use crate::column::{COLUMNS, Cell, Column};
 use crepitus_model::render::effects::Phases;
 use crepitus_protocol::TICK_S;
 use crepitus_protocol::telemetry::SampleFlags;
-use serde_json::{Map, Number, Value};
 use std::fmt::Write as _;
 
 /// End of all ticks and other counts of a recording: centuries. A file with larger ones is none of
@@ -82,17 +80,6 @@ impl Row {
         }
     }
 
-    /// Appends it as a line of CSV; numbers read back to the same bits.
-    pub fn append_to(&self, line: &mut String) {
-        let mut separator = "";
-        for column in &COLUMNS {
-            line.push_str(separator);
-            column.append(self, line);
-            separator = ",";
-        }
-        line.push('\n');
-    }
-
     /// Phase of the imaginary object: `stick`, `slip+`, `slip-`.
     pub fn phase(&self) -> &'static str {
         match self.flags.phase_sign() {
@@ -132,24 +119,6 @@ impl Row {
             separator = "+";
         }
     }
-
-    /// Returns the row as an object, with the names of [`COLUMNS`] and the same numbers; what
-    /// is empty in a line is null.
-    pub fn to_json(&self) -> Value {
-        let value = |column: &Column| {
-            let mut text = String::new();
-            column.append(self, &mut text);
-            let number = text.parse::<Number>().ok();
-            match column.cell {
-                _ if text.is_empty() => Value::Null,
-                Cell::Word(_) => Value::String(text),
-                // What is not finite is no number of JSON.
-                _ => number.map_or(Value::String(text), Value::Number),
-            }
-        };
-        let members = COLUMNS.iter().map(|column| (column.name.to_owned(), value(column)));
-        members.collect::<Map<_, _>>().into()
-    }
 }
 
 #[cfg(test)]
@@ -174,35 +143,5 @@ mod tests {
         ] {
             assert_eq!(after.step_from(&before), step, "tick {}", after.tick);
         }
-    }
-
-    #[test]
-    fn an_object_has_the_names_and_numbers_of_a_line() {
-        let row = Row {
-            tick: 1 << 40,
-            time_s: 0.1,
-            omega_rad_s: 0.1,
-            flags: SampleFlags::default()
-                .with(SampleFlags::BREAK, true)
-                .with(SampleFlags::LOST, true),
-            ..Row::default()
-        };
-        let object = row.to_json();
-        let mut line = String::new();
-        row.append_to(&mut line);
-        for (Column { name, .. }, cell) in COLUMNS.iter().zip(line.trim_end().split(',')) {
-            let text = match &object[name] {
-                Value::Null => String::new(),
-                Value::String(text) => text.clone(),
-                number => number.to_string(),
-            };
-            assert_eq!(text, cell, "{name}");
-        }
-        assert_eq!(object.as_object().unwrap().len(), COLUMNS.len());
-        assert_eq!(
-            (&object["event"], &object["notes"]),
-            (&"break".into(), &"lost".into())
-        );
-        assert!(object["current_a"].is_null() && object["omega_rad_s"] == 0.1);
     }
 }

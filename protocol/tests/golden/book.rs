@@ -1,4 +1,4 @@
-//! The parts of `docs/protocol.md` that are made from the code.
+//! The parts of `docs/generated/protocol.md` that are made from the code.
 
 use crate::examples::{self, Example};
 use crate::hex::hex;
@@ -55,7 +55,7 @@ fn the_protocol_is_on_its_page() {
         ("examples", short(&examples)),
     ];
     pages::hold(
-        "protocol.md",
+        "generated/protocol.md",
         &parts.map(|(name, part)| (name.to_owned(), part)),
     );
 }
@@ -232,7 +232,7 @@ fn faults() -> String {
     for spec in &FAULTS {
         let _ = writeln!(
             text,
-            "| {} | [{name}](faults.md#{code}-{name}) | {} |",
+            "| {} | [{name}](../faults.md#{code}-{name}) | {} |",
             spec.fault.code(),
             spec.detector.name(),
             name = spec.name,
@@ -247,7 +247,7 @@ fn coil_faults() -> String {
     for spec in &COIL_FAULTS {
         let _ = writeln!(
             text,
-            "| {} | [{name}](faults.md#the-coil) |",
+            "| {} | [{name}](../faults.md#the-coil) |",
             spec.fault.code(),
             name = spec.name,
         );

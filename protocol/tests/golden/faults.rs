@@ -1,4 +1,4 @@
-//! The parts of `docs/faults.md` that are made from the table of faults.
+//! The parts of `docs/generated/faults.md` that are made from the table of faults.
 
 use crate::pages;
 use crepitus_protocol::TICKS_PER_S;
@@ -14,7 +14,7 @@ fn every_fault_is_on_its_page() {
     for spec in &FAULTS {
         parts.push((spec.name.to_owned(), section(spec)));
     }
-    pages::hold("faults.md", &parts);
+    pages::hold("generated/faults.md", &parts);
 }
 
 /// Each has a section of its own, with a word on what to look at.
@@ -28,8 +28,7 @@ fn every_fault_has_troubleshooting_steps() {
             .split_once(&heading)
             .unwrap_or_else(|| panic!("docs/faults.md has no {heading}"));
         let section = rest.split("\n### ").next().unwrap_or(rest);
-        let (_, words) = section.split_once("<!-- end -->").expect("a table");
-        assert!(words.contains("**Look at**"), "{heading}");
+        assert!(section.contains("**Look at**"), "{heading}");
     }
 }
 

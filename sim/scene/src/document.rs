@@ -12,6 +12,7 @@ pub(crate) use writer::quoted;
 
 use crate::error::{Origin, SceneError};
 use crepitus_files::characters::first_look_alike;
+use crepitus_files::input;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -39,6 +40,18 @@ pub(crate) enum Value {
 
 /// Keys that were left out, and what they were taken to be.
 pub(crate) type Defaults = RefCell<Vec<(String, Value)>>;
+
+/// The text of a file.
+pub(crate) fn text_of(file: &Path) -> Result<String, SceneError> {
+    let whole = |message: String| SceneError {
+        file: file.to_owned(),
+        origin: None,
+        key: String::new(),
+        message,
+    };
+    input::read_to_string(file, input::TEXT_BYTES)
+        .map_err(|e| whole(format!("cannot be read: {e}")))
+}
 
 /// A scene file's text as a tree.
 #[derive(Clone, Debug)]

@@ -24,8 +24,11 @@
 
 pub mod any_joint;
 pub mod cpu_time;
+mod device_checks;
 mod document;
+mod effects;
 pub mod error;
+mod knee;
 pub mod output;
 pub mod preset;
 pub mod reference;
@@ -38,6 +41,7 @@ pub mod values;
 pub mod walk;
 
 pub use error::SceneError;
+pub use knee::Knee;
 pub use preset::Preset;
 pub use run::{Observer, RunError, Summary, run};
 pub use scene::{Overrides, Scene};

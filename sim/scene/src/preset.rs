@@ -24,18 +24,18 @@ mod disorder;
 mod json;
 mod shipped;
 
+pub use crate::effects::is_disorder;
 pub use disorder::{Disorder, Evidence, Level};
-pub use shipped::{FILES, Joint, PresetFile, find, joints, shipped};
+pub use shipped::{FILES, Joint, PresetFile, find, joints, shipped, similar_name};
 
-use crate::document::{Document, Section, quoted};
+use crate::device_checks::{caps_warning, convention_refusal};
+use crate::document::{Document, Section, quoted, text_of};
+use crate::effects::{self, Crepitus, Start, effect_settings};
 use crate::error::SceneError;
-use crate::scene::effects::Presets;
-use crate::scene::stages::effect_settings;
-use crate::scene::{Crepitus, Overrides, Scene, device, effects};
 use crepitus_model::Parameters;
 use crepitus_model::control::device_limits::{LimitSettings, RangeSettings};
 use crepitus_model::parameters::{ParameterSpec, Tabled};
-use crepitus_model::render::effects::{EffectSettings, IS_SYMPTOM, SPECS};
+use crepitus_model::render::effects::EffectSettings;
 use crepitus_plant::assembly::Listed;
 use crepitus_plant::effect::{Effect, Part};
 use std::fmt::Write;
@@ -98,13 +98,40 @@ pub enum Setting {
     Option(&'static str),
 }
 
+/// The presets that a preset can build on.
+#[derive(Clone, Copy)]
+enum Presets<'p> {
+    /// All that ship.
+    Shipped,
+    /// These, of those that ship.
+    Only(&'p [Preset]),
+}
+
+impl<'p> Presets<'p> {
+    fn list(self) -> &'p [Preset] {
+        match self {
+            Self::Shipped => shipped(),
+            Self::Only(presets) => presets,
+        }
+    }
+
+    fn starts(self) -> Vec<Start<'p>> {
+        self.list().iter().filter_map(Preset::start).collect()
+    }
+}
+
+/// The presets that the effects of a scene may start from.
+pub(crate) fn starts() -> Vec<Start<'static>> {
+    Presets::Shipped.starts()
+}
+
 impl Preset {
     /// Reads and checks a file.
     ///
     /// # Errors
     /// [`SceneError`] with line, key, cause and valid values.
     pub fn read(file: &Path) -> Result<Self, SceneError> {
-        Self::parse(file, &crate::scene::text_of(file)?)
+        Self::parse(file, &text_of(file)?)
     }
 
     /// Checks the text of a file, which errors name.
@@ -130,7 +157,7 @@ impl Preset {
             crepitus,
             encoder,
             listed,
-        } = effects::read_alone(&section, known)?;
+        } = effects::read_alone(&section, &|| known.starts())?;
         if encoder.is_some() {
             return Err(no_knee(&section.section("encoder")?));
         }
@@ -165,6 +192,16 @@ impl Preset {
         preset.values = preset.values_of(&root, &section, known)?;
         root.finish()?;
         Ok(preset)
+    }
+
+    /// The preset as effects start from it; `None` if it does not ship.
+    fn start(&self) -> Option<Start<'_>> {
+        let mut names = FILES.iter().map(|file| file.name);
+        Some(Start {
+            name: names.find(|name| self.name == *name)?,
+            crepitus: self.crepitus.as_ref(),
+            listed: &self.listed,
+        })
     }
 
     /// Its effects, in the order of the table.
@@ -227,13 +264,13 @@ impl Preset {
     /// Warns of effects that can ask for more than a device at its defaults shows.
     pub fn caps_warning(&self) -> Option<String> {
         let (limits, range) = (LimitSettings::default(), RangeSettings::default());
-        device::caps_warning(&self.effect_settings(), self.joint(), &limits, &range)
+        caps_warning(&self.effect_settings(), self.joint(), &limits, &range)
     }
 
     /// Checks what a device renders: each effect by itself, then all of them.
     fn check(&self, effects: &Section<'_>) -> Result<(), SceneError> {
         if let Some(crepitus) = &self.crepitus
-            && let Some(why) = device::convention_refusal(&crepitus.settings)
+            && let Some(why) = convention_refusal(&crepitus.settings)
         {
             return Err(effects.section("crepitus")?.error(why));
         }
@@ -334,47 +371,6 @@ impl Preset {
         all.extend(numbers(&listed.given.numbers));
         all
     }
-}
-
-/// Content of a file: a scene, which has a `version`, or a preset.
-#[derive(Clone, Debug)]
-pub enum Knee {
-    /// A scene.
-    Scene(Box<Scene>),
-    /// A preset.
-    Preset(Box<Preset>),
-}
-
-impl Knee {
-    /// Reads and checks a file of either kind.
-    ///
-    /// # Errors
-    /// As [`Preset::read`].
-    pub fn read(file: &Path) -> Result<Self, SceneError> {
-        let text = crate::scene::text_of(file)?;
-        let document = Document::parse(file, &text)?;
-        let root = document.section();
-        if root.has("version") {
-            let scene = Scene::parse(file, &text, &Overrides::default())?;
-            return Ok(Self::Scene(Box::new(scene)));
-        }
-        // No preset has them, so the line was forgotten.
-        if root.has("motion") || root.has("solver") {
-            return Err(root.key_error(
-                "version",
-                "this key is missing: a file with `motion` or `solver` is a scene, and a scene needs `version = 1` as \
-                 its first line",
-            ));
-        }
-        Ok(Self::Preset(Box::new(Preset::parse(file, &text)?)))
-    }
-}
-
-/// Returns whether an effect renders a disorder.
-pub fn is_disorder(effect: &Effect) -> bool {
-    let mut symptoms = SPECS.iter().zip(IS_SYMPTOM);
-    matches!(effect.part, Part::Joint)
-        || symptoms.any(|(spec, is_symptom)| *is_symptom && spec.name == effect.name)
 }
 
 fn evidences() -> [(&'static str, Evidence); 3] {

@@ -1,26 +1,27 @@
 //! A scene: everything that decides a run, checked.
 
 mod data_file;
-pub(crate) mod device;
-pub(crate) mod effects;
+mod device;
 mod motion;
 mod plausible_angles;
 mod recorded_motion;
 mod solver;
-pub(crate) mod stages;
+mod stages;
 mod variants;
 
+pub use crate::device_checks::caps_warning;
+pub use crate::effects::Crepitus;
 pub use data_file::DataFile;
-pub use device::caps_warning;
 pub use motion::MotionKind;
 pub use solver::{Precision, SolverChoice};
 
-use crate::document::{Document, Range, Section, Value};
+use crate::document::{Document, Range, Section, Value, text_of};
+use crate::effects;
 use crate::error::SceneError;
+use crate::preset;
 use crate::reference::symptoms::NAMES;
-use crepitus_files::input;
 use crepitus_model::control::encoder::EncoderSettings;
-use crepitus_model::{Convention, Settings, SettingsError, Validated};
+use crepitus_model::{Convention, SettingsError};
 use crepitus_plant::actuator::Actuator;
 use crepitus_plant::assembly::{Listed, assemble, assemble_with};
 use crepitus_plant::chain::Body;
@@ -77,15 +78,6 @@ pub struct Scene {
     pub warnings: Vec<String>,
 }
 
-/// The `crepitus` effect of a scene.
-#[derive(Clone, Copy, Debug)]
-pub struct Crepitus {
-    /// The preset it started from, if any.
-    pub preset: Option<&'static str>,
-    /// The active settings.
-    pub settings: Validated<Settings>,
-}
-
 /// Overrides of a scene by the command line.
 #[derive(Clone, Debug, Default)]
 pub struct Overrides {
@@ -129,7 +121,7 @@ impl Scene {
         let motion = motion::read(&root.section("motion")?, duration_s)?;
         let solver_section = root.section("solver")?;
         let (solver, substeps) = read_solver(&solver_section)?;
-        let effects = effects::read(root.optional_section("effects")?.as_ref())?;
+        let effects = effects::read(root.optional_section("effects")?.as_ref(), &preset::starts)?;
         let is_device = root.flag("device")?;
         let output = root.optional_section("output")?;
         let trace_step_s = read_trace_step(output.as_ref(), &solver_section, solver, duration_s)?;
@@ -288,18 +280,6 @@ fn title(root: &Section<'_>) -> Result<String, SceneError> {
     let title = name.to_string_lossy().into_owned();
     root.note("title", Value::Text(title.clone()));
     Ok(title)
-}
-
-/// The text of a file.
-pub(crate) fn text_of(file: &Path) -> Result<String, SceneError> {
-    let whole = |message: String| SceneError {
-        file: file.to_owned(),
-        origin: None,
-        key: String::new(),
-        message,
-    };
-    input::read_to_string(file, input::TEXT_BYTES)
-        .map_err(|e| whole(format!("cannot be read: {e}")))
 }
 
 /// Effects as a scene file names them.

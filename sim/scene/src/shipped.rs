@@ -1,9 +1,9 @@
 //! The scenes that ship, embedded in the program.
 
+use crate::document::text_of;
 use crate::error::{Origin, SceneError};
 use crate::scene::{Overrides, Scene};
-use crate::document::text_of;
-use crate::similar::{self, question};
+use crate::similar::{question, similar};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -150,7 +150,7 @@ impl Source {
         }
         if !path.exists() {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-            let meant = question(similar(&stem));
+            let meant = question(similar_name(&stem));
             return Err(whole(
                 path,
                 format!(
@@ -250,8 +250,8 @@ pub fn scene(path: &Path, overrides: &Overrides) -> Result<Scene, SceneError> {
 }
 
 /// The most similar name of a scene that ships.
-pub fn similar(given: &str) -> Option<&'static str> {
-    similar::similar(SHIPPED.iter().map(|scene| scene.name), given)
+pub fn similar_name(given: &str) -> Option<&'static str> {
+    similar(SHIPPED.iter().map(|scene| scene.name), given)
 }
 
 /// An error of a whole file.
@@ -270,8 +270,8 @@ mod tests {
 
     #[test]
     fn a_slip_of_the_finger_leads_to_the_name() {
-        assert_eq!(similar("slow-examinatoin"), Some("slow-examination"));
-        assert_eq!(similar("no-such-scene"), None);
+        assert_eq!(similar_name("slow-examinatoin"), Some("slow-examination"));
+        assert_eq!(similar_name("no-such-scene"), None);
     }
 
     #[test]

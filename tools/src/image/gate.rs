@@ -2,6 +2,7 @@
 
 mod bounds;
 mod code;
+mod found;
 mod layout;
 mod loops;
 mod panics;
@@ -22,7 +23,6 @@ use std::collections::BTreeSet;
 use vouched::Vouched;
 
 pub use shared::needless_loops;
-pub(crate) use sizes::change_percent;
 pub(crate) use vouched::unknown_calls;
 
 /// An analysed image, with its budget.

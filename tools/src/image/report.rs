@@ -61,6 +61,16 @@ pub struct Size {
     pub at_least: bool,
 }
 
+impl Size {
+    /// Difference from the record, %.
+    pub fn change_percent(&self) -> f64 {
+        match (self.used, self.recorded) {
+            (0, 0) => 0.0,
+            (used, recorded) => (f64::from(used) / f64::from(recorded) - 1.0) * 100.0,
+        }
+    }
+}
+
 /// The stack of one level of preemption.
 #[derive(Debug, Clone, Serialize)]
 pub struct Level {

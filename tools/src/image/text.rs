@@ -1,6 +1,5 @@
 //! A report as text.
 
-use crate::image::gate::change_percent;
 use crate::image::report::{Finding, Report};
 use std::fmt::Write;
 
@@ -34,7 +33,7 @@ fn write_report(out: &mut String, report: &Report) -> std::fmt::Result {
     )?;
     for size in &report.sizes {
         let mark = mark(size.at_least);
-        let change = change_percent(size);
+        let change = size.change_percent();
         let change = match size.recorded {
             0 => "new".to_owned(),
             _ => format!("{change:+.1} %"),

@@ -3,8 +3,8 @@
 use crate::failure::{Failure, print, print_json};
 use clap::Args;
 use crepitus_pages::table::{Cell, Table};
-use crepitus_scene::shipped::{SHIPPED, Shipped};
-use crepitus_scene::similar::{self, question};
+use crepitus_scene::shipped::{SHIPPED, Shipped, similar_name};
+use crepitus_scene::similar::question;
 use crepitus_scene::{Overrides, SceneError};
 use std::path::Path;
 
@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
             Some(shipped) => print(shipped.text),
             None => Err(Failure::Input(format!(
                 "no scene \"{name}\" ships{}: `crepitus scenes` lists those that do",
-                question(similar::scene(name))
+                question(similar_name(name))
             ))),
         };
     }

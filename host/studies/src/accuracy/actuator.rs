@@ -80,10 +80,7 @@ pub fn actuator_table(points: &[ActuatorPoint]) -> Table<'_, ActuatorPoint> {
 ///
 /// # Errors
 /// Error of the watcher.
-pub fn points(
-    repeats: usize,
-    watcher: &mut dyn Watcher,
-) -> Result<Vec<ActuatorPoint>, StudyError> {
+pub fn points(repeats: usize, watcher: &mut dyn Watcher) -> Result<Vec<ActuatorPoint>, StudyError> {
     let torque = torque_nm()?;
     let exact = voltages::<f64>(&torque, 1)?;
     let ratios = [ratio::<f64>(repeats)?, ratio::<f32>(repeats)?];

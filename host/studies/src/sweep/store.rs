@@ -8,15 +8,13 @@ use crate::sweep::store_error::{StoreError, at};
 use crate::sweep::table::{self, Format, TableError, Written};
 use crate::sweep::traced::Traces;
 use crepitus_files::input;
-use crepitus_files::output::{
-    Claim, Hashed, OutputError, OwnedFolder, State, check_folder, lock_folder,
-};
+use crepitus_files::output::{Claim, Hashed, OwnedFolder, State, check_folder, lock_folder};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Write};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Interval of writing rows: as much is lost of a sweep that is killed.

@@ -90,12 +90,7 @@ impl DeviceEffect<f32> for Constant {
         Self
     }
 
-    fn added(
-        &mut self,
-        _: &Tick<'_, f32>,
-        _: &mut Shown<f32>,
-        _: &mut impl Observe<f32>,
-    ) -> f32 {
+    fn added(&mut self, _: &Tick<'_, f32>, _: &mut Shown<f32>, _: &mut impl Observe<f32>) -> f32 {
         0.5
     }
 
@@ -172,9 +167,7 @@ fn a_parameter_has_the_default_of_what_it_describes() {
         };
         assert_eq!(parameter.default().to_bits(), default.to_bits());
     }
-    let switches = DEVICE
-        .iter()
-        .map(|device| switch(device));
+    let switches = DEVICE.iter().map(|device| switch(device));
     let mut ids: std::vec::Vec<_> = switches.collect();
     let count = ids.len();
     ids.sort_unstable();

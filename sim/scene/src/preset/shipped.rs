@@ -1,7 +1,7 @@
 //! The presets that ship: the folder `presets`, embedded.
 
-use super::Preset;
-use crate::scene::effects::Presets;
+use super::{Preset, Presets};
+use crate::similar::similar;
 use crepitus_model::Parameters;
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -110,9 +110,9 @@ pub fn find(name: &str) -> Option<&'static Preset> {
 }
 
 /// The most similar name of a preset that ships.
-pub fn similar(given: &str) -> Option<&'static str> {
+pub fn similar_name(given: &str) -> Option<&'static str> {
     let names = shipped().iter().map(|preset| preset.name.as_str());
-    similar::similar(names, given)
+    similar(names, given)
 }
 
 /// The stick-slip joint of a preset.

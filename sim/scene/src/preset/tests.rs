@@ -390,19 +390,6 @@ fn mistakes_are_named_with_line_key_and_remedy() {
     );
 }
 
-#[test]
-fn a_scene_whose_version_was_forgotten_is_no_wrong_preset() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("mine.toml");
-    for tables in ["[motion]\n", "[solver]\n"] {
-        std::fs::write(&file, format!("description = \"x\"\n{tables}")).unwrap();
-        let error = Knee::read(&file).unwrap_err().to_string();
-        assert!(error.contains("needs `version = 1`"), "{error}");
-    }
-    std::fs::write(&file, "[effects.clonus]\n").unwrap();
-    assert!(matches!(Knee::read(&file), Ok(Knee::Preset(_))));
-}
-
 fn scene(effects: &str) -> Result<Scene, SceneError> {
     let toml = format!(
         "version = 1\ntitle = \"x\"\nduration_s = 1\n\

@@ -1,16 +1,16 @@
 //! Rejects settings that the drive cannot render, in a scene with a device.
 
-use super::effects::Effects;
 use super::{Crepitus, Scene, SolverChoice};
+use crate::device_checks::{caps_warning, convention_refusal};
 use crate::document::Section;
+use crate::effects::Effects;
 use crate::error::SceneError;
+use crepitus_model::Convention;
 use crepitus_model::control::device_limits::{LimitSettings, RangeSettings};
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::render::effects::friction_compensation::FrictionCompensationSettings;
-use crepitus_model::render::effects::{EffectSettings, Reach, SYMPTOMS};
 use crepitus_model::render::turn_back::most_rad_per_count;
-use crepitus_model::{Convention, Parameters, Settings};
 use crepitus_plant::assembly::Listed;
 use crepitus_plant::effect::numbers;
 use crepitus_plant::effects::drivetrain;
@@ -49,19 +49,6 @@ pub(super) fn check(
     }
 }
 
-/// Reason for which no device renders these settings, if none does.
-pub(crate) fn convention_refusal(settings: &Settings) -> Option<String> {
-    if settings.convention != Convention::Frozen {
-        return Some(format!(
-            "a device renders the convention \"frozen\" alone, not \"{}\"",
-            settings.convention.name()
-        ));
-    }
-    (settings.parameters.damping_nms_per_rad > 0.0).then(|| {
-        "a device renders a joint without damping: leave damping_nms_per_rad out".to_owned()
-    })
-}
-
 /// That a scene's device compensates all the friction that its gear has, or
 /// more, if it does.
 pub(super) fn compensation_warning(listed: &[Listed]) -> Option<String> {
@@ -84,31 +71,6 @@ pub(super) fn caps_warning_of(scene: &Scene) -> Option<String> {
     let (limits, range) = (LimitSettings::default(), RangeSettings::default());
     let warning = caps_warning(&scene.effect_settings(), joint, &limits, &range);
     warning.filter(|_| scene.is_device)
-}
-
-/// Warns of symptoms and a joint that can ask for more than a device with these limits shows,
-/// anywhere in its range.
-pub fn caps_warning(
-    effects: &EffectSettings,
-    joint: Option<&Parameters>,
-    limits: &LimitSettings,
-    range: &RangeSettings,
-) -> Option<String> {
-    let most_nm = limits.torque_nm;
-    let asked_nm = effects.largest_within_nm(joint, &Reach::of(range, limits));
-    if asked_nm <= most_nm {
-        return None;
-    }
-    let is_on = |place: &usize| effects.only(*place) != EffectSettings::default();
-    let symptoms = (0..SYMPTOMS.len()).filter(is_on).count();
-    let shows = format!("and the device shows {most_nm} N·m at most");
-    Some(if symptoms + usize::from(joint.is_some()) == 1 {
-        format!("the symptom can ask for {asked_nm:.1} N·m, {shows}: beyond, it does not grow")
-    } else {
-        format!(
-            "the symptoms can ask for {asked_nm:.1} N·m together, {shows}: beyond, one hides the other"
-        )
-    })
 }
 
 /// Reason for which a device with this encoder would refuse a joint, if it would.

@@ -1,25 +1,14 @@
 //! The stages of a device that a scene lists, built from its numbers.
 
 use crate::document::Section;
+use crate::effects::effect_settings;
 use crate::error::SceneError;
 use crate::scene::Scene;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
-use crepitus_model::parameters::Chosen;
 use crepitus_model::render::effects::{EffectChanges, EffectSettings, Effects, Timing};
 use crepitus_model::render::position::Sight;
 use crepitus_model::{Real, SettingsError};
 use crepitus_plant::assembly::Listed;
-
-/// Settings of the device's effects among those that are listed.
-pub(crate) fn effect_settings(listed: &[Listed]) -> EffectSettings {
-    EffectSettings::given(|name| {
-        let listed = listed.iter().find(|l| l.effect.name == name)?;
-        Some(Chosen {
-            numbers: &listed.given.numbers,
-            options: &listed.given.choices,
-        })
-    })
-}
 
 impl Scene {
     /// The laws of the effects that it lists, besides the joint.

@@ -1,7 +1,6 @@
 //! Loops that gated interrupts reach, against the bounds of the budget.
 
-use super::code::Found;
-use super::loops::Loops;
+use super::found::{Found, Loops};
 use super::{Gate, finding};
 use crate::image::budget::BoundedLoops;
 use crate::image::report::{Finding, LoopRow};

@@ -1,8 +1,7 @@
 //! Code that gated interrupts must not reach.
 
+use super::found::Found;
 use super::layout::Root;
-use super::loops::Catalogue;
-use super::panics::Sites;
 use super::vouched::unknown_calls;
 use super::{Gate, finding};
 use crate::image::body::{Leave, Step, Target};
@@ -10,33 +9,8 @@ use crate::image::decode::{Flow, Stack};
 use crate::image::panics::is_panic;
 use crate::image::program::Function;
 use crate::image::reach::Reach;
-use crate::image::report::{Finding, Report};
+use crate::image::report::Report;
 use std::collections::BTreeSet;
-
-/// Findings so far, each place once however many interrupts reach it.
-pub(super) struct Found<'r> {
-    pub(super) report: &'r mut Report,
-    pub(super) loops: Catalogue,
-    pub(super) panics: Sites,
-    seen: BTreeSet<(&'static str, u32, usize)>,
-}
-
-impl Found<'_> {
-    pub(super) fn is_new(&mut self, check: &'static str, address: u32, detail: usize) -> bool {
-        self.seen.insert((check, address, detail))
-    }
-
-    pub(super) fn fail(
-        &mut self,
-        address: u32,
-        finding: impl FnOnce() -> Finding,
-        check: &'static str,
-    ) {
-        if self.is_new(check, address, 0) {
-            self.report.failures.push(finding());
-        }
-    }
-}
 
 impl Gate<'_> {
     /// Everything that a function reaches, up to panics.
@@ -47,12 +21,7 @@ impl Gate<'_> {
     }
 
     pub(super) fn check_code(&self, roots: &[Root<'_>], report: &mut Report) {
-        let mut found = Found {
-            report,
-            loops: Catalogue::new(),
-            panics: Sites::new(),
-            seen: BTreeSet::new(),
-        };
+        let mut found = Found::new(report);
         let mut reached = BTreeSet::new();
         for root in roots.iter().filter(|root| root.interrupt.gated) {
             let reach = self.reach(root.function);

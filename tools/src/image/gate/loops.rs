@@ -8,41 +8,12 @@
 //! and changes of inlining, and a new loop is a new one. Without debug
 //! information it is the symbol and the address.
 
-use super::code::Found;
+use super::found::{Copies, Found, Spot};
 use super::layout::Root;
 use super::{Gate, finding};
 use crate::image::lines::Frame;
 use crate::image::loops::Loop;
 use crate::image::program::Function;
-use std::collections::BTreeMap;
-
-/// Place of a loop in its function.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Spot {
-    /// Line, the place in a library, and how many loops of the same spot it
-    /// is nested in.
-    Line(u32, String, usize),
-    /// Address of the loop, if there is no debug information.
-    Address(u32),
-}
-
-/// The loops of one function of the source.
-#[derive(Debug, Default)]
-pub(super) struct Loops {
-    pub(super) spots: BTreeMap<Spot, Copies>,
-    /// Some line of them is in this repository.
-    pub(super) is_own: bool,
-    /// The first handler found to reach it, and the way.
-    pub(super) handler: String,
-    pub(super) path: Vec<String>,
-}
-
-/// One loop of the source, as often as it was inlined.
-#[derive(Debug)]
-pub(super) struct Copies {
-    pub(super) place: String,
-    pub(super) count: usize,
-}
 
 /// Origin of a loop in the source.
 struct Origin {
@@ -55,9 +26,6 @@ struct Origin {
     /// The spot is in this repository.
     is_own: bool,
 }
-
-/// Loops by the function of the source.
-pub(super) type Catalogue = BTreeMap<String, Loops>;
 
 impl Gate<'_> {
     /// Records the loops of a function; endless ones are failures.

@@ -1,14 +1,10 @@
 //! Calls of panics: none in this repository's code, and in a library's no more
 //! than the budget allows.
 
-use super::code::Found;
+use super::found::Found;
 use super::{Gate, finding};
 use crate::image::program::Function;
 use crate::image::report::PanicRow;
-use std::collections::BTreeMap;
-
-/// Allowed calls of panics that gated interrupts reach, by library: a place each.
-pub(super) type Sites = BTreeMap<String, Vec<String>>;
 
 impl Gate<'_> {
     /// Counts a call of a panic where its library has an allowance; otherwise it

@@ -72,7 +72,7 @@ impl Gate<'_> {
                 "make it smaller; the worst path of the stack is in the table above",
             ));
         }
-        let change = change_percent(size);
+        let change = size.change_percent();
         let with_percent = |more: f64| f64::from(recorded) * (100.0 + more) / 100.0;
         if recorded == 0 && used > 0 {
             report.failures.push(finding(
@@ -109,13 +109,5 @@ impl Gate<'_> {
         let under = sections.filter(|s| region.holds(s.address, 0) && s.address < top);
         let floor = under.map(Section::end).max();
         top.saturating_sub(floor.unwrap_or(region.origin))
-    }
-}
-
-/// Difference of a size from the record, %.
-pub(crate) fn change_percent(size: &Size) -> f64 {
-    match (size.used, size.recorded) {
-        (0, 0) => 0.0,
-        (used, recorded) => (f64::from(used) / f64::from(recorded) - 1.0) * 100.0,
     }
 }

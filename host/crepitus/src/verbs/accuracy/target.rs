@@ -27,7 +27,13 @@ pub(super) fn add(
     } else {
         Lengths::FULL
     };
-    let costs = target::costs(&mut study.points, scenes, lengths, ladder, &mut Watch::new());
+    let costs = target::costs(
+        &mut study.points,
+        scenes,
+        lengths,
+        ladder,
+        &mut Watch::new(),
+    );
     let costs = costs.map_err(|error: TargetError<String>| match error {
         TargetError::Study(error) => crate::studying::failed(error),
         other => Failure::Work(format!("--target: {other}")),

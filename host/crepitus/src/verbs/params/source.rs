@@ -3,11 +3,11 @@
 use crate::failure::Failure;
 use crate::own_presets;
 use crepitus_protocol::Values;
-use crepitus_scene::preset::{self, Knee, Preset};
+use crepitus_scene::preset::{self, Preset};
 use crepitus_scene::shipped::{self, Shipped};
 use crepitus_scene::similar::question;
 use crepitus_scene::values::{with_preset, with_scene};
-use crepitus_scene::{Overrides, Scene};
+use crepitus_scene::{Knee, Overrides, Scene};
 use std::path::Path;
 
 /// A preset or a scene.
@@ -43,7 +43,7 @@ impl Source {
             let presets = name.map(own_presets::suggestions);
             let alike = presets
                 .filter(|text| !text.is_empty())
-                .unwrap_or_else(|| question(name.and_then(shipped::similar)));
+                .unwrap_or_else(|| question(name.and_then(shipped::similar_name)));
             return Err(Failure::Input(format!(
                 "{}: there is no such file, no such preset and no such scene{alike}: `crepitus presets` and \
                  `crepitus scenes` list those that ship",

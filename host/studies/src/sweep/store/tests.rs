@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::sweep::row::Cell;
+use std::path::PathBuf;
 use std::slice::from_ref;
 
 pub(crate) fn identity(runs: u64, sha256: &str) -> Identity {

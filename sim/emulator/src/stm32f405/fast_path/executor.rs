@@ -2,8 +2,8 @@
 
 use super::arithmetic::is_jump;
 use super::float_registers::Floats;
-use super::permissions::Permissions;
 use super::memory::Windows;
+use super::permissions::Permissions;
 use super::timing::Timing;
 use rsemu::cpu::arm::v7m::{ArmV7m, xpsr};
 

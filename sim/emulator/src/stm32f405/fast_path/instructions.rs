@@ -7,9 +7,7 @@ use super::Executed;
 use super::arithmetic::{extended, it_state, low_word, offset, shift, sum};
 use super::code::{Code, Decoded};
 use super::executor::Executor;
-use rsemu::cpu::arm::v7m::isa::{
-    BitfieldOp, Cond, DpOp, ExtendOp, Insn, MiscOp, Operand, Size,
-};
+use rsemu::cpu::arm::v7m::isa::{BitfieldOp, Cond, DpOp, ExtendOp, Insn, MiscOp, Operand, Size};
 use rsemu::cpu::arm::v7m::sys::ccr;
 use rsemu::cpu::arm::v7m::xpsr;
 

@@ -1,15 +1,12 @@
 //! The `[effects]` table. An effect that is not listed is not built, not stepped, and
 //! absent from the outputs.
 
-use super::Crepitus;
 use crate::document::{Range, Section};
 use crate::error::SceneError;
-use crate::preset::{FILES, Preset, is_disorder, shipped};
 use crepitus_model::control::encoder::EncoderSettings;
-use crepitus_model::parameters::ParameterSpec;
-use crepitus_model::parameters::Tabled;
-use crepitus_model::render::effects::EffectSpec;
-use crepitus_model::{Convention, Restart, Settings};
+use crepitus_model::parameters::{Chosen, ParameterSpec, Tabled};
+use crepitus_model::render::effects::{EffectSettings, EffectSpec, IS_SYMPTOM, SPECS};
+use crepitus_model::{Convention, Restart, Settings, Validated};
 use crepitus_plant::assembly::Listed;
 use crepitus_plant::effect::{Effect, Given, Part};
 use crepitus_plant::effects::EFFECTS;
@@ -23,30 +20,45 @@ pub(crate) struct Effects {
     pub(crate) listed: Vec<Listed>,
 }
 
-/// The presets that effects may start from.
-#[derive(Clone, Copy)]
-pub(crate) enum Presets<'p> {
-    /// All that ship.
-    Shipped,
-    /// These.
-    Only(&'p [Preset]),
+/// The `crepitus` effect of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Crepitus {
+    /// The preset it started from, if any.
+    pub preset: Option<&'static str>,
+    /// The active settings.
+    pub settings: Validated<Settings>,
 }
 
-impl<'p> Presets<'p> {
-    pub(crate) fn list(self) -> &'p [Preset] {
-        match self {
-            Self::Shipped => shipped(),
-            Self::Only(presets) => presets,
+/// A preset, as effects start from it.
+#[derive(Clone, Copy)]
+pub(crate) struct Start<'p> {
+    pub(crate) name: &'static str,
+    pub(crate) crepitus: Option<&'p Crepitus>,
+    /// All other effects, in the order of the table.
+    pub(crate) listed: &'p [Listed],
+}
+
+impl Start<'_> {
+    fn has(&self, effect: &Effect) -> bool {
+        match effect.part {
+            Part::Joint => self.crepitus.is_some(),
+            _ => self.listed.iter().any(|l| l.effect.name == effect.name),
         }
     }
 }
 
+/// Lists the presets that effects may start from.
+pub(crate) type Starts<'f, 'p> = &'f dyn Fn() -> Vec<Start<'p>>;
+
 /// The effects of a scene: each with those that it needs.
-pub(super) fn read(section: Option<&Section<'_>>) -> Result<Effects, SceneError> {
+pub(crate) fn read(
+    section: Option<&Section<'_>>,
+    presets: Starts<'_, '_>,
+) -> Result<Effects, SceneError> {
     let Some(section) = section else {
         return Ok(Effects::default());
     };
-    let effects = read_alone(section, Presets::Shipped)?;
+    let effects = read_alone(section, presets)?;
     for effect in EFFECTS {
         let Some(own) = section.optional_section(effect.name)? else {
             continue;
@@ -66,7 +78,7 @@ pub(super) fn read(section: Option<&Section<'_>>) -> Result<Effects, SceneError>
 /// Effects that may start from these presets, without those that they need.
 pub(crate) fn read_alone(
     section: &Section<'_>,
-    presets: Presets<'_>,
+    presets: Starts<'_, '_>,
 ) -> Result<Effects, SceneError> {
     let mut effects = Effects::default();
     for effect in EFFECTS {
@@ -91,16 +103,15 @@ pub(crate) fn read_alone(
 fn base<'p>(
     section: &Section<'_>,
     effect: &Effect,
-    presets: Presets<'p>,
-) -> Result<Option<&'p Preset>, SceneError> {
+    presets: Starts<'_, 'p>,
+) -> Result<Option<Start<'p>>, SceneError> {
     if !is_disorder(effect) || section.optional_text("preset")?.is_none() {
         return Ok(None);
     }
-    let choices: Vec<_> = presets
-        .list()
-        .iter()
-        .filter(|preset| preset.has(effect.name))
-        .map(|preset| (preset.name.as_str(), preset))
+    let choices: Vec<_> = presets()
+        .into_iter()
+        .filter(|preset| preset.has(effect))
+        .map(|preset| (preset.name, preset))
         .collect();
     let named = section.optional_choice("preset", &choices);
     named.map_err(|error| SceneError {
@@ -133,10 +144,10 @@ pub(crate) fn written_as<'k>(
 fn crepitus(
     section: &Section<'_>,
     effect: &Effect,
-    presets: Presets<'_>,
+    presets: Starts<'_, '_>,
 ) -> Result<Crepitus, SceneError> {
     let preset = base(section, effect, presets)?;
-    let start = preset.and_then(|preset| preset.crepitus.as_ref());
+    let start = preset.and_then(|preset| preset.crepitus);
     let start = start.map_or_else(Settings::default, |crepitus| *crepitus.settings);
     let conventions = Convention::ALL.map(|c| (c.name(), c));
     let restarts = Restart::ALL.map(|r| (r.name(), r));
@@ -148,10 +159,7 @@ fn crepitus(
     numbers(section, effect.parameters, settings.parameters.values_mut())?;
     section.finish()?;
     Ok(Crepitus {
-        preset: preset.and_then(|preset| {
-            let names = FILES.iter().map(|file| file.name);
-            names.into_iter().find(|name| preset.name == *name)
-        }),
+        preset: preset.map(|preset| preset.name),
         settings: settings
             .validate()
             .map_err(|e| section.error(e.to_string()))?,
@@ -169,7 +177,7 @@ fn encoder(section: &Section<'_>, effect: &Effect) -> Result<EncoderSettings, Sc
 fn given(
     section: &Section<'_>,
     effect: &Effect,
-    presets: Presets<'_>,
+    presets: Starts<'_, '_>,
 ) -> Result<Given, SceneError> {
     let start = base(section, effect, presets)?.and_then(|preset| {
         let of_it = |listed: &&Listed| listed.effect.name == effect.name;
@@ -215,4 +223,22 @@ fn numbers<'a>(
         *value = section.number_or(parameter.key, range, *value)?;
     }
     Ok(())
+}
+
+/// Returns whether an effect renders a disorder.
+pub fn is_disorder(effect: &Effect) -> bool {
+    let mut symptoms = SPECS.iter().zip(IS_SYMPTOM);
+    matches!(effect.part, Part::Joint)
+        || symptoms.any(|(spec, is_symptom)| *is_symptom && spec.name == effect.name)
+}
+
+/// Settings of the device's effects among those that are listed.
+pub(crate) fn effect_settings(listed: &[Listed]) -> EffectSettings {
+    EffectSettings::given(|name| {
+        let listed = listed.iter().find(|l| l.effect.name == name)?;
+        Some(Chosen {
+            numbers: &listed.given.numbers,
+            options: &listed.given.choices,
+        })
+    })
 }
