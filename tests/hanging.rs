@@ -97,7 +97,7 @@ fn a_recording_whose_end_was_slept_through_counts_what_is_missing() {
         "{text}"
     );
     let recording = recording(&path);
-    let totals = recording.books().totals;
+    let totals = recording.accounting().totals;
     assert!(totals.produced > 55_000, "{totals:?}");
     assert!(totals.dropped > 30_000, "{totals:?}");
     let warnings = recording.warnings().join("\n");

@@ -263,7 +263,7 @@ fn a_recording_that_was_moved_while_it_ran_replaces_no_other() {
     assert_eq!(fs::read(&file).unwrap(), fs::read(&other).unwrap());
     let recording = Recording::open(&moved, Damage::Refuse).unwrap();
     assert!(recording.is_complete());
-    assert!(recording.books().totals.received > 0);
+    assert!(recording.accounting().totals.received > 0);
 }
 
 #[test]

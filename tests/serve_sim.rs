@@ -172,7 +172,7 @@ fn a_recording_goes_on_when_the_device_comes_back() {
         stderr(&output)
     );
     let recording = recording(&file);
-    let books = recording.books();
+    let books = recording.accounting();
     assert!(recording.is_complete());
     assert_eq!((books.drive_restarts, books.segments.len()), (1, 2));
     let rows = rows(&recording);

@@ -31,13 +31,13 @@ struct Row {
 }
 
 /// Records rows.
-struct Keeper {
+struct RowRecorder {
     places: [usize; 4],
     model: Option<usize>,
     rows: Vec<Row>,
 }
 
-impl Observer for Keeper {
+impl Observer for RowRecorder {
     type Error = Infallible;
 
     fn row(&mut self, values: &[f64]) -> Result<(), Infallible> {
@@ -153,7 +153,7 @@ fn scene(file: &Path) -> Result<Scene, String> {
 fn rows(scene: &Scene) -> Vec<Row> {
     let columns = crepitus_scene::run::columns(scene);
     let place = |name| columns.iter().position(|c| c.name == name);
-    let mut rows = Keeper {
+    let mut rows = RowRecorder {
         places: ["encoder_count", "omega_rad_s", "shown_nm", "limit"]
             .map(|name| place(name).expect(name)),
         model: place("torque_nm"),

@@ -19,8 +19,8 @@ use crepitus_model::render::effects::{
     EffectSettings, EffectSpec, SPECS, SwitchedEffects, TANK_J, TANK_REFILL_W, Timing,
 };
 use crepitus_model::render::input_check::{Checked, InputCheck, InputLimits};
-use crepitus_model::render::position::Sight;
-use crepitus_model::render::{Addition, Check, Seen, Shown};
+use crepitus_model::render::position::Sensing;
+use crepitus_model::render::{Addition, Check, ShaftEstimate, Shown};
 use crepitus_model::{Real, ShaftStep};
 use std::f64::consts::PI;
 
@@ -45,23 +45,23 @@ const SYMPTOMS: usize = crepitus_model::render::effects::SYMPTOMS.len();
 pub fn body(data: &[u8]) {
     let mut bytes = Bytes::new(data);
     let kind = bytes.byte();
-    let sight = if kind & 2 == 0 {
-        Sight::IDEAL
+    let sensing = if kind & 2 == 0 {
+        Sensing::IDEAL
     } else {
-        Sight::of_encoder(&EncoderSettings::default())
+        Sensing::of_encoder(&EncoderSettings::default())
     };
     if kind & 1 == 0 {
-        run::<f32>(bytes, sight);
+        run::<f32>(bytes, sensing);
     } else {
-        run::<f64>(bytes, sight);
+        run::<f64>(bytes, sensing);
     }
 }
 
-fn run<F: Real>(mut bytes: Bytes<'_>, sight: Sight) {
-    let mut knee = Knee::<F>::new(sight, 2.5 * bytes.part());
+fn run<F: Real>(mut bytes: Bytes<'_>, sensing: Sensing) {
+    let mut knee = Knee::<F>::new(sensing, 2.5 * bytes.part());
     knee.commit(&settings(&mut bytes));
     if bytes.byte() & 1 == 0 {
-        let place = sight.position(knee.angle_rad);
+        let place = sensing.position(knee.angle_rad);
         knee.effects.rest(&place);
     }
     let mut shaft = Shaft::default();
@@ -173,7 +173,7 @@ impl Bounds {
 /// Knowledge of the leg's way in a tick.
 #[derive(Clone, Copy, PartialEq)]
 enum Way {
-    Seen,
+    ShaftEstimate,
     Unseen,
     /// Over a gap.
     Guessed,
@@ -207,11 +207,11 @@ struct Knee<F: Real> {
 }
 
 impl<F: Real> Knee<F> {
-    fn new(sight: Sight, angle_rad: f64) -> Self {
+    fn new(sensing: Sensing, angle_rad: f64) -> Self {
         let timing = Timing {
             step_s: STEP_S,
             delay_ticks: 2,
-            sight,
+            sensing,
         };
         Self {
             effects: SwitchedEffects::new(F::from_f64(SLEW_NM), &timing),
@@ -265,10 +265,10 @@ impl<F: Real> Knee<F> {
             (_, Some(step)) => F::from_f64(step.delta_phi_rad).to_f64(),
         };
         self.angle_rad += travel_rad;
-        let seen = Seen {
+        let seen = ShaftEstimate {
             sample,
             omega_rad_s: F::ZERO,
-            place: self.timing.sight.position(self.angle_rad),
+            place: self.timing.sensing.position(self.angle_rad),
             is_driven: self.is_driven,
         };
         let mut shown = Shown::nothing();
@@ -280,10 +280,10 @@ impl<F: Real> Knee<F> {
             &mut |spec: &'static EffectSpec, change: Change<F>| words.see(spec, &change),
         );
         let way = match input {
-            Checked::Step(shaft) if shaft.delta_phi_rad != F::ZERO => Way::Seen,
+            Checked::Step(shaft) if shaft.delta_phi_rad != F::ZERO => Way::ShaftEstimate,
             // An angle that the velocities do not explain.
             Checked::Step(shaft) if shaft != ShaftStep::default() => Way::Guessed,
-            Checked::Step(_) => Way::Seen,
+            Checked::Step(_) => Way::ShaftEstimate,
             Checked::Missing(_) => Way::Unseen,
             Checked::CatchUp(_) | Checked::Resume(_) => Way::Guessed,
         };

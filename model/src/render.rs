@@ -46,7 +46,7 @@ pub enum Limit {
     Slew = 2,
     /// The hand has turned back inside a slip: nothing is shown until it ends.
     TurnedBack = 5,
-    /// The shaft is out of sight: the last torque is held, then released.
+    /// The shaft is out of sensing: the last torque is held, then released.
     Holding = 6,
     /// There is no torque: the device is not armed.
     NotArmed = 7,
@@ -126,7 +126,7 @@ impl<F: Real> Shown<F> {
 
 /// Knowledge of the shaft in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen<F> {
+pub struct ShaftEstimate<F> {
     /// Its motion since the last sample that was taken.
     pub sample: Sample<F>,
     /// Its velocity as far as known, rad/s; also where this sample is lost.
@@ -173,7 +173,7 @@ pub trait Addition<F> {
     /// One tick.
     fn tick(
         &mut self,
-        seen: &Seen<F>,
+        seen: &ShaftEstimate<F>,
         input: &Checked<F>,
         shown: &mut Shown<F>,
         observe: &mut impl Observe<F>,
@@ -216,7 +216,7 @@ impl<F: Real, I: Check<F>, S: Symptom<F>, E: Addition<F>, L: Limits<F>> Pipeline
 
     /// One tick.
     #[inline]
-    pub fn tick(&mut self, seen: &Seen<F>, on_event: impl FnMut(Event<F>)) -> Shown<F> {
+    pub fn tick(&mut self, seen: &ShaftEstimate<F>, on_event: impl FnMut(Event<F>)) -> Shown<F> {
         self.tick_observed(seen, on_event, &mut ())
     }
 
@@ -224,7 +224,7 @@ impl<F: Real, I: Check<F>, S: Symptom<F>, E: Addition<F>, L: Limits<F>> Pipeline
     #[inline]
     pub fn tick_observed(
         &mut self,
-        seen: &Seen<F>,
+        seen: &ShaftEstimate<F>,
         on_event: impl FnMut(Event<F>),
         observe: &mut impl Observe<F>,
     ) -> Shown<F> {
@@ -239,14 +239,19 @@ impl<F: Real, I: Check<F>, S: Symptom<F>, E: Addition<F>, L: Limits<F>> Pipeline
     /// The stages after the symptoms; on their own, what is shown before the
     /// first tick.
     #[inline]
-    pub fn add(&mut self, seen: &Seen<F>, input: &Checked<F>, shown: Shown<F>) -> Shown<F> {
+    pub fn add(
+        &mut self,
+        seen: &ShaftEstimate<F>,
+        input: &Checked<F>,
+        shown: Shown<F>,
+    ) -> Shown<F> {
         self.add_observed(seen, input, shown, &mut ())
     }
 
     #[inline]
     fn add_observed(
         &mut self,
-        seen: &Seen<F>,
+        seen: &ShaftEstimate<F>,
         input: &Checked<F>,
         mut shown: Shown<F>,
         observe: &mut impl Observe<F>,
@@ -324,7 +329,14 @@ impl<F> Addition<F> for () {
     fn rest(&mut self, _: &Position<F>) {}
 
     #[inline]
-    fn tick(&mut self, _: &Seen<F>, _: &Checked<F>, _: &mut Shown<F>, _: &mut impl Observe<F>) {}
+    fn tick(
+        &mut self,
+        _: &ShaftEstimate<F>,
+        _: &Checked<F>,
+        _: &mut Shown<F>,
+        _: &mut impl Observe<F>,
+    ) {
+    }
 }
 
 impl<F> Limits<F> for () {
@@ -332,7 +344,7 @@ impl<F> Limits<F> for () {
     fn tick(&mut self, _: &mut Shown<F>) {}
 }
 
-impl<F: Real> Seen<F> {
+impl<F: Real> ShaftEstimate<F> {
     /// A sample that was taken of a joint that is driven, at this place.
     #[inline]
     pub fn taken(shaft: &ShaftStep<F>, place: Position<F>) -> Self {
@@ -362,13 +374,13 @@ mod tests {
         Bare(Frozen::new(coefficients, 1.0))
     }
 
-    fn steady() -> Seen<f64> {
+    fn steady() -> ShaftEstimate<f64> {
         let shaft = ShaftStep {
             delta_phi_rad: 5e-5,
             omega_start_rad_s: 1.0,
             omega_end_rad_s: 1.0,
         };
-        Seen::taken(&shaft, Position::at(0))
+        ShaftEstimate::taken(&shaft, Position::at(0))
     }
 
     #[test]
@@ -422,7 +434,7 @@ mod tests {
     fn a_bare_solver_waits_for_its_next_sample() {
         let mut pipeline = Pipeline::new((), joint(), (), ());
         let before = pipeline.tick(&steady(), |_| {}).torque_nm;
-        let lost = Seen {
+        let lost = ShaftEstimate {
             sample: Sample::Lost,
             ..steady()
         };

@@ -5,14 +5,14 @@ use crepitus_model::render::effects::vibration_actuator::{
     HEATING_S, VibrationActuator, VibrationActuatorSettings,
 };
 use crepitus_model::render::effects::{DeviceEffect, Timing};
-use crepitus_model::render::position::Sight;
+use crepitus_model::render::position::Sensing;
 use proptest::prelude::*;
 
 const TICK_S: f64 = 5e-5;
 const TIMING: Timing = Timing {
     step_s: TICK_S,
     delay_ticks: 1,
-    sight: Sight::IDEAL,
+    sensing: Sensing::IDEAL,
 };
 
 fn law(settings: &VibrationActuatorSettings) -> VibrationActuator<f32> {

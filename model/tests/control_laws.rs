@@ -15,7 +15,7 @@ use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::effects::bone_shaping::BoneShapingSettings;
 use crepitus_model::render::effects::friction_compensation::FrictionCompensationSettings;
 use crepitus_model::render::effects::{DeviceEffect, Timing};
-use crepitus_model::render::position::Sight;
+use crepitus_model::render::position::Sensing;
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
     BoneShaping, CurrentLoop, FrictionCompensation, Frozen, Real, Settings, ShaftStep,
@@ -29,7 +29,7 @@ const TICK_S: f64 = 5e-5;
 const TIMING: Timing = Timing {
     step_s: TICK_S,
     delay_ticks: 1,
-    sight: Sight::IDEAL,
+    sensing: Sensing::IDEAL,
 };
 
 /// Any number, NaN and infinities.

@@ -46,7 +46,7 @@ const fn joint(inertia: f64, stiffness: f64, kinetic: f64, static_: f64) -> Para
 
 /// The shaft as the joint measures it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Sight {
+enum Sensing {
     /// The true angle.
     True,
     /// The counts of the device's encoder, and the speed estimated from them.
@@ -55,8 +55,8 @@ enum Sight {
 
 /// The largest energy returned over any stretch, as a part of the bound's
 /// first term, for a hand at these angles tick by tick.
-fn returned(parameters: Parameters, delay: usize, sight: Sight, angles_rad: &[f64]) -> f64 {
-    let (guarded, _) = accounting(parameters, delay, sight, angles_rad);
+fn returned(parameters: Parameters, delay: usize, sensing: Sensing, angles_rad: &[f64]) -> f64 {
+    let (guarded, _) = accounting(parameters, delay, sensing, angles_rad);
     guarded
 }
 
@@ -64,7 +64,7 @@ fn returned(parameters: Parameters, delay: usize, sight: Sight, angles_rad: &[f6
 fn accounting(
     parameters: Parameters,
     delay: usize,
-    sight: Sight,
+    sensing: Sensing,
     angles_rad: &[f64],
 ) -> (f64, f64) {
     let encoder = EncoderSettings::default();
@@ -88,9 +88,9 @@ fn accounting(
     let mut omega = 0.0;
     for pair in angles_rad.windows(2) {
         let delta_phi = pair[1] - pair[0];
-        let shaft = match sight {
-            Sight::Counts => reader.read(count(pair[1])),
-            Sight::True => {
+        let shaft = match sensing {
+            Sensing::Counts => reader.read(count(pair[1])),
+            Sensing::True => {
                 // The velocity at the end of a tick whose mean is known.
                 let end = 2.0 * delta_phi / TICK_S - omega;
                 ShaftStep {
@@ -104,9 +104,9 @@ fn accounting(
         hand.tick(delta_phi, f64::from(shown.torque_nm));
         unguarded.tick(delta_phi, f64::from(shown.model_torque_nm));
     }
-    let counts = match sight {
-        Sight::True => 0.0,
-        Sight::Counts => {
+    let counts = match sensing {
+        Sensing::True => 0.0,
+        Sensing::Counts => {
             encoder.rad_per_count() * parameters.stiffness_nm_per_rad / parameters.static_torque_nm
         }
     };
@@ -142,13 +142,13 @@ fn sine(amplitude_rad: f64, frequency_hz: f64, seconds: f64) -> Vec<f64> {
 }
 
 /// Every delay of the torque, in ticks, with both sights.
-const SIGHTS: [(usize, Sight); 6] = [
-    (0, Sight::True),
-    (1, Sight::True),
-    (2, Sight::True),
-    (0, Sight::Counts),
-    (1, Sight::Counts),
-    (2, Sight::Counts),
+const SIGHTS: [(usize, Sensing); 6] = [
+    (0, Sensing::True),
+    (1, Sensing::True),
+    (2, Sensing::True),
+    (0, Sensing::Counts),
+    (1, Sensing::Counts),
+    (2, Sensing::Counts),
 ];
 
 #[test]
@@ -156,12 +156,12 @@ fn a_hand_that_shakes_gets_no_more_back_than_the_bound() {
     let mut worst = 0.0_f64;
     for (joint, p) in JOINTS {
         let stroke = p.static_torque_nm / p.stiffness_nm_per_rad;
-        for (delay, sight) in SIGHTS {
+        for (delay, sensing) in SIGHTS {
             for amplitude in [0.3, 0.51, 0.9, 0.99, 1.01, 1.2, 2.0, 5.0, 30.0] {
                 for frequency in [2.0, 7.0, 20.0, 50.0, 90.0] {
                     let angles = sine(amplitude * stroke, frequency, 2.0);
-                    let part = returned(p, delay, sight, &angles);
-                    println!("{joint} {delay} {sight:?} {amplitude} {frequency}: {part:.3}");
+                    let part = returned(p, delay, sensing, &angles);
+                    println!("{joint} {delay} {sensing:?} {amplitude} {frequency}: {part:.3}");
                     worst = worst.max(part);
                 }
             }
@@ -175,7 +175,7 @@ fn a_hand_that_shakes_gets_no_more_back_than_the_bound() {
 fn without_the_guard_a_hand_that_turns_back_in_slips_gets_many_times_the_bound() {
     let p = Parameters::default();
     let angles = sine(5.0 * p.static_torque_nm / p.stiffness_nm_per_rad, 20.0, 2.0);
-    let (guarded, unguarded) = accounting(p, 0, Sight::True, &angles);
+    let (guarded, unguarded) = accounting(p, 0, Sensing::True, &angles);
     println!("with the guard {guarded:.2}, without {unguarded:.1} times what the spring holds");
     assert!(guarded <= 1.0 && unguarded > 5.0);
 }
@@ -186,14 +186,14 @@ proptest! {
     #[test]
     fn nor_does_any_other_hand(
         joint in 0..JOINTS.len(),
-        sight in 0..SIGHTS.len(),
+        sensing in 0..SIGHTS.len(),
         points in prop::collection::vec((-4.0..4.0_f64, 20..3000_u32), 2..40),
     ) {
         let (_, p) = JOINTS[joint];
         let stroke = p.static_torque_nm / p.stiffness_nm_per_rad;
         let points: Vec<_> = points.iter().map(|&(to, ticks)| (to * stroke, ticks)).collect();
-        let (delay, sight) = SIGHTS[sight];
-        let part = returned(p, delay, sight, &moves(&points));
+        let (delay, sensing) = SIGHTS[sensing];
+        let part = returned(p, delay, sensing, &moves(&points));
         prop_assert!(part <= 1.0, "{part}");
     }
 }

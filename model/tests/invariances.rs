@@ -18,7 +18,7 @@ const UNIT_S: f64 = 1e-5;
 const UNITS_PER_KNOT: usize = 60;
 
 /// An event as it is compared: when, from and to which phase.
-type Seen = (f64, i8, i8);
+type Compared = (f64, i8, i8);
 
 /// A shaft whose velocity is linear between knots, cut into steps of so many
 /// units; knots are 60 units apart and never jump.
@@ -52,7 +52,7 @@ struct Run<'a> {
 
 impl<F: Real> JointVisitor<F> for Run<'_> {
     /// The events, and the torque's bits after every step of the motion.
-    type Output = (Vec<Seen>, Vec<u64>);
+    type Output = (Vec<Compared>, Vec<u64>);
 
     fn visit<J: StickSlip<F>>(self, mut joint: J) -> Self::Output {
         for _ in 0..self.rest {
@@ -81,7 +81,7 @@ fn run<F: Real>(
     knots: &[f64],
     units: usize,
     rest: usize,
-) -> (Vec<Seen>, Vec<u64>) {
+) -> (Vec<Compared>, Vec<u64>) {
     let (steps, step_s) = (cut(knots, units), units as f64 * UNIT_S);
     let omega = F::from_f64(knots[0]);
     let run = Run {

@@ -65,15 +65,15 @@ impl Hand<'_> {
 }
 
 /// The events, and where the object was seen at the ends of steps.
-struct Seen {
+struct Followed {
     events: Vec<(f64, Event<f64>)>,
     object: Vec<(Phase, f64, f64)>,
 }
 
 impl JointVisitor<f64> for Hand<'_> {
-    type Output = Seen;
+    type Output = Followed;
 
-    fn visit<J: StickSlip<f64>>(self, mut joint: J) -> Seen {
+    fn visit<J: StickSlip<f64>>(self, mut joint: J) -> Followed {
         let (mut events, mut object) = (Vec::new(), Vec::new());
         for (n, step) in (0_u32..).zip(self.steps()) {
             joint.step(&step, |e| {
@@ -81,11 +81,11 @@ impl JointVisitor<f64> for Hand<'_> {
             });
             object.push((joint.phase(), joint.theta_rad(), joint.theta_dot_rad_s()));
         }
-        Seen { events, object }
+        Followed { events, object }
     }
 }
 
-fn run(convention: Convention, knots: &[(f64, f64)], sign: f64) -> Seen {
+fn run(convention: Convention, knots: &[(f64, f64)], sign: f64) -> Followed {
     let settings = Settings {
         convention,
         ..Settings::default()

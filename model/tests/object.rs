@@ -1,6 +1,6 @@
 //! The imaginary object of a frozen joint, which nothing needs for the torque
 //! and every picture shows: where it is, and how it goes on when its numbers
-//! change or the shaft was out of sight.
+//! change or the shaft was out of sensing.
 
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{

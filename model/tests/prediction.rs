@@ -38,7 +38,7 @@ const SECONDS: f64 = 0.4;
 
 /// The shaft as the joint measures it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Sight {
+enum Sensing {
     /// The true angle, and the true velocity at the tick.
     True,
     /// The counts of the device's encoder, and the velocity estimated from them.
@@ -56,7 +56,7 @@ enum Shown {
     NextTick,
 }
 
-const SIGHTS: [Sight; 2] = [Sight::True, Sight::Counts];
+const SIGHTS: [Sensing; 2] = [Sensing::True, Sensing::Counts];
 
 const SHOWN: [Shown; 3] = [Shown::Joint, Shown::HalfTick, Shown::NextTick];
 
@@ -80,7 +80,7 @@ fn next_tick(renderer: &Renderer<f32, ExactEvents>, omega: f32) -> f64 {
 }
 
 /// The travel of every tick, and what was shown at its beginning in each way.
-fn ticks(p: Parameters, sight: Sight, hand: Hand<'_>, seconds: f64) -> Vec<(f64, [f64; 3])> {
+fn ticks(p: Parameters, sensing: Sensing, hand: Hand<'_>, seconds: f64) -> Vec<(f64, [f64; 3])> {
     let encoder = EncoderSettings::default();
     let settings = Settings {
         parameters: p,
@@ -101,9 +101,9 @@ fn ticks(p: Parameters, sight: Sight, hand: Hand<'_>, seconds: f64) -> Vec<(f64,
     for n in 1..=(seconds / TICK_S) as u32 {
         let (next, omega_next) = hand(f64::from(n) * TICK_S);
         ticks.push((next - phi, shown));
-        let shaft = match sight {
-            Sight::Counts => reader.read(count(next)),
-            Sight::True => ShaftStep {
+        let shaft = match sensing {
+            Sensing::Counts => reader.read(count(next)),
+            Sensing::True => ShaftStep {
                 delta_phi_rad: (next - phi) as f32,
                 omega_start_rad_s: omega as f32,
                 omega_end_rad_s: omega_next as f32,
@@ -130,15 +130,15 @@ fn ticks(p: Parameters, sight: Sight, hand: Hand<'_>, seconds: f64) -> Vec<(f64,
 /// counts half a count at the limit more) and g·kr·h·∫Ω² dt; −1 if less will do.
 fn constant(
     p: Parameters,
-    sight: Sight,
+    sensing: Sensing,
     ticks: &[(f64, [f64; 3])],
     way: usize,
     delay: usize,
 ) -> f64 {
     let stored = p.static_torque_nm.powi(2) / (2.0 * p.stiffness_nm_per_rad);
-    let counts = match sight {
-        Sight::True => 0.0,
-        Sight::Counts => EncoderSettings::default().rad_per_count() * p.static_torque_nm / 2.0,
+    let counts = match sensing {
+        Sensing::True => 0.0,
+        Sensing::Counts => EncoderSettings::default().rad_per_count() * p.static_torque_nm / 2.0,
     };
     let holds = |g: f64| {
         let (mut level, mut highest, mut deepest) = (0.0_f64, 0.0_f64, 0.0_f64);
@@ -168,17 +168,17 @@ fn constant(
 /// A hand with a name.
 type Named = (String, Box<dyn Fn(f64) -> (f64, f64)>);
 
-/// The largest constants over the given hands: by what is shown, by sight and
+/// The largest constants over the given hands: by what is shown, by sensing and
 /// by delay.
 fn worst(name: &str, p: Parameters, hands: &[Named]) -> [[[f64; 3]; 2]; 3] {
     let mut worst = [[[-1.0; 3]; 2]; 3];
     let mut by = [[[""; 3]; 2]; 3];
     for (what, hand) in hands {
-        for (s, sight) in SIGHTS.into_iter().enumerate() {
-            let ticks = ticks(p, sight, hand, SECONDS);
+        for (s, sensing) in SIGHTS.into_iter().enumerate() {
+            let ticks = ticks(p, sensing, hand, SECONDS);
             for (way, _) in SHOWN.into_iter().enumerate() {
                 for delay in DELAYS {
-                    let g = constant(p, sight, &ticks, way, delay);
+                    let g = constant(p, sensing, &ticks, way, delay);
                     if g > worst[way][s][delay] {
                         worst[way][s][delay] = g;
                         by[way][s][delay] = what;
@@ -188,9 +188,9 @@ fn worst(name: &str, p: Parameters, hands: &[Named]) -> [[[f64; 3]; 2]; 3] {
         }
     }
     for (way, shown) in SHOWN.into_iter().enumerate() {
-        for (s, sight) in SIGHTS.into_iter().enumerate() {
+        for (s, sensing) in SIGHTS.into_iter().enumerate() {
             println!(
-                "{name}, {shown:?}, {sight:?}: g is at least {:.3}, {:.3}, {:.3} for 0, 1, 2 ticks of delay ({}; {}; {})",
+                "{name}, {shown:?}, {sensing:?}: g is at least {:.3}, {:.3}, {:.3} for 0, 1, 2 ticks of delay ({}; {}; {})",
                 worst[way][s][0],
                 worst[way][s][1],
                 worst[way][s][2],

@@ -33,7 +33,7 @@ const MOTIONS: [(&str, Velocity); 3] = [
 ];
 
 #[derive(Debug, Default)]
-struct Seen {
+struct Outcome {
     /// Times of events, and the phases before and after.
     events: Vec<(f64, i8, i8)>,
     /// ∫T dt, N·m·s, and ∫θ̇ dt of the object, rad.
@@ -47,10 +47,10 @@ struct Seen {
 struct Run(Velocity);
 
 impl<F: Real> JointVisitor<F> for Run {
-    type Output = Seen;
+    type Output = Outcome;
 
-    fn visit<J: StickSlip<F>>(self, mut joint: J) -> Seen {
-        let mut seen = Seen::default();
+    fn visit<J: StickSlip<F>>(self, mut joint: J) -> Outcome {
+        let mut seen = Outcome::default();
         for n in 0..STEPS {
             let (from_s, to_s) = (f64::from(n) * STEP_S, f64::from(n + 1) * STEP_S);
             let (a, b) = ((self.0)(from_s), (self.0)(to_s));
@@ -86,7 +86,7 @@ impl<F: Real> JointVisitor<F> for Run {
     }
 }
 
-fn run(settings: &Validated<Settings>, solver: Solver, velocity: Velocity) -> Seen {
+fn run(settings: &Validated<Settings>, solver: Solver, velocity: Velocity) -> Outcome {
     with_joint::<f64, _>(settings, solver, STEP_S, velocity(0.0), Run(velocity)).unwrap()
 }
 
@@ -137,7 +137,7 @@ fn every_rung_finds_the_events_of_the_exact_one() {
     }
 }
 
-fn compare(what: &str, solver: Solver, seen: &Seen, exact: &Seen) {
+fn compare(what: &str, solver: Solver, seen: &Outcome, exact: &Outcome) {
     let within_s = steps_off(solver) * STEP_S;
     // The last event may fall beyond the end.
     let both = seen.events.len().min(exact.events.len());
@@ -151,7 +151,7 @@ fn compare(what: &str, solver: Solver, seen: &Seen, exact: &Seen) {
         seen.events.len(),
         exact.events.len()
     );
-    let phases = |s: &Seen| {
+    let phases = |s: &Outcome| {
         s.events
             .iter()
             .take(both)

@@ -239,7 +239,7 @@ struct Definition {
 struct Unclear;
 
 /// Time and sense of a break.
-struct Found {
+struct Break {
     time_s: f64,
     sign: f64,
 }
@@ -258,16 +258,16 @@ impl Definition {
     }
 
     /// The first break, if there is one.
-    fn first_break(&self, steps: &[ShaftStep<f64>]) -> Result<Option<Found>, Unclear> {
+    fn first_break(&self, steps: &[ShaftStep<f64>]) -> Result<Option<Break>, Unclear> {
         let mut theta = 0.0;
         for (n, step) in (0_u32..).zip(steps) {
             let begins_s = f64::from(n) * self.step_s;
-            let mut first: Option<Found> = None;
+            let mut first: Option<Break> = None;
             for sign in [1.0, -1.0] {
                 if let Some(after_s) = self.in_a_step(step, theta, sign)? {
                     let time_s = begins_s + after_s;
                     if first.as_ref().is_none_or(|f| time_s < f.time_s) {
-                        first = Some(Found { time_s, sign });
+                        first = Some(Break { time_s, sign });
                     }
                 }
             }

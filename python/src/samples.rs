@@ -120,7 +120,7 @@ pub(crate) fn read_recording(
         }
         let about = json!({
             "metadata": recording.metadata(),
-            "books": recording.books(),
+            "books": recording.accounting(),
             "complete": recording.is_complete(),
             "warnings": recording.warnings(),
         });

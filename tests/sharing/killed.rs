@@ -74,7 +74,7 @@ fn many_programs_are_killed_at_random() {
     let (mut rows, mut complete) = (0, 0);
     for path in files.iter().filter(|path| path.exists()) {
         let recording = readable(path);
-        rows += recording.books().totals.received;
+        rows += recording.accounting().totals.received;
         complete += usize::from(recording.is_complete());
     }
     println!(
@@ -131,7 +131,7 @@ fn record_is_killed_at_any_instant() {
                 !ended_in_order || recording.is_complete(),
                 "{name} after {ms} ms"
             );
-            samples += recording.books().totals.received;
+            samples += recording.accounting().totals.received;
             complete += usize::from(recording.is_complete());
             cut += usize::from(!recording.is_complete());
         } else {

@@ -133,14 +133,14 @@ pub(crate) fn rows(recording: &Recording) -> Vec<Row> {
 /// The books of a recording, recounted in its rows. The drive has not
 /// restarted.
 pub(crate) fn check_books(recording: &Recording) -> Totals {
-    let totals = recording.books().totals;
+    let totals = recording.accounting().totals;
     assert_eq!(totals.produced, totals.received + totals.dropped);
     let rows = rows(recording);
     assert_eq!(rows.len() as u64, totals.received);
     let (Some(first), Some(last)) = (rows.first(), rows.last()) else {
         return totals;
     };
-    let begin = recording.books().segments[0].first_tick;
+    let begin = recording.accounting().segments[0].first_tick;
     assert_eq!(last.tick + 1 - begin, totals.produced);
     let mut missing = first.tick - begin;
     for pair in rows.windows(2) {

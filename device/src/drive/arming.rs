@@ -84,7 +84,7 @@ enum Step {
 
 /// Inputs of arming in a tick.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct ArmingInputs {
     /// Raw currents of sensor and monitor, A.
     pub raw_a: Option<(f32, f32)>,
     /// The drive's enable line, as read back.
@@ -125,7 +125,7 @@ impl Default for Arming {
 
 impl Arming {
     /// Runs one tick.
-    pub fn tick(&mut self, seen: &Seen) -> ArmingOutput {
+    pub fn tick(&mut self, seen: &ArmingInputs) -> ArmingOutput {
         self.ticks = self.ticks.saturating_add(1);
         match self.step {
             Step::Offset => self.offset(seen.raw_a, seen.line_is_on),

@@ -6,7 +6,7 @@ mod samples;
 
 use crate::counters::Counters;
 use crate::drive::Boot;
-use crate::drive::arming::Seen;
+use crate::drive::arming::ArmingInputs;
 use crate::drive::batch::Batch;
 use crate::drive::coil::{Coil, CoilOutput};
 use crate::drive::emf_check::EmfCheck;
@@ -347,7 +347,7 @@ impl Command {
         let fault_before = self.safety.fault();
         let mut permit = self.safety.tick(
             now,
-            &Seen {
+            &ArmingInputs {
                 raw_a: inputs.current_a.zip(inputs.monitor_a),
                 line_is_on: inputs.enable_is_on,
                 comms_line_is_on: inputs.comms_enable_is_on,

@@ -12,7 +12,7 @@ use crepitus_model::control::current_loop::{CurrentLoop, CurrentLoopSettings};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::effects::{EffectChanges, Timing};
-use crepitus_model::render::position::Sight;
+use crepitus_model::render::position::Sensing;
 use crepitus_model::render::ramp::Ramp;
 use crepitus_model::{Settings, SettingsError, StepCoefficients, Validated};
 use crepitus_protocol::measured::SUPPLY_SHARES;
@@ -39,12 +39,12 @@ const HELD_SHARE: f64 = 0.95;
 pub(crate) const TIMING: Timing = Timing {
     step_s: TICK_S,
     delay_ticks: MOST_DELAY_TICKS,
-    sight: Sight::IDEAL,
+    sensing: Sensing::IDEAL,
 };
 
 fn timing(encoder: &EncoderSettings) -> Timing {
     Timing {
-        sight: Sight::of_encoder(encoder),
+        sensing: Sensing::of_encoder(encoder),
         ..TIMING
     }
 }

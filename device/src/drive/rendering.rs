@@ -10,7 +10,7 @@ use crepitus_model::render::effects::SwitchedEffects;
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
 use crepitus_model::render::position::Position;
-use crepitus_model::render::{Limit, Pipeline, Seen, Shown};
+use crepitus_model::render::{Limit, Pipeline, ShaftEstimate, Shown};
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{Crepitus, EventKind, Real};
 use crepitus_protocol::telemetry::SampleFlags;
@@ -122,7 +122,7 @@ impl Rendering {
     }
 
     fn render(&mut self, turn: &Turn, sampled: &Sampled) -> Rendered {
-        let seen = Seen {
+        let seen = ShaftEstimate {
             sample: sampled.shaft,
             omega_rad_s: sampled.omega_rad_s,
             place: Position::at(sampled.count.wrapping_sub(turn.zero)),

@@ -14,7 +14,7 @@
 //! late can keep the torque on.
 
 use crate::counters::Counters;
-use crate::drive::arming::{Arming, ArmingOutput, Seen};
+use crate::drive::arming::{Arming, ArmingInputs, ArmingOutput};
 use crate::drive::heartbeat_monitor::{Freshness, HeartbeatMonitor};
 use crate::self_test::SelfTest;
 use crepitus_protocol::counters::DriveCounter;
@@ -229,7 +229,7 @@ impl Safety {
     }
 
     /// Runs first in every tick; returns the permitted output.
-    pub fn tick(&mut self, now: u64, seen: &Seen, counters: &Counters) -> Permit {
+    pub fn tick(&mut self, now: u64, seen: &ArmingInputs, counters: &Counters) -> Permit {
         if self.is_live()
             && let Some(fault) = self.heartbeat_monitor.timeout(now)
         {
@@ -287,7 +287,7 @@ mod tests {
             let counters = Counters::default();
             let mut safety = Safety::new(ResetCause::Power, self_test);
             let defect = safety.fault();
-            let seen = Seen {
+            let seen = ArmingInputs {
                 raw_a: None,
                 line_is_on: true,
                 comms_line_is_on: false,

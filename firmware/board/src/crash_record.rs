@@ -14,13 +14,13 @@ pub(crate) type Ring = [[Word; TICK_WORDS]; TICKS];
 const NO_HEAD: [u32; HEAD_WORDS] = [u32::MAX; HEAD_WORDS];
 
 /// A record, and its checksum.
-pub(crate) struct Kept {
+pub(crate) struct CheckedRecord {
     head: [Word; HEAD_WORDS],
     ticks: Ring,
     checksum: Word,
 }
 
-impl Kept {
+impl CheckedRecord {
     /// Initial value in the source; the section is not initialised at start.
     pub(crate) const fn empty() -> Self {
         Self {
@@ -82,7 +82,7 @@ impl Kept {
     }
 }
 
-/// Returns the ring's initial value, as in [`Kept::empty`].
+/// Returns the ring's initial value, as in [`CheckedRecord::empty`].
 pub(crate) const fn empty_ring() -> Ring {
     [const { [const { Word::new(0) }; TICK_WORDS] }; TICKS]
 }

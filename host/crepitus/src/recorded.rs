@@ -276,7 +276,7 @@ pub(crate) fn written(
     write: Write,
 ) -> Result<u64, Failure> {
     let mut progress = Progress::of_reading();
-    let expected = recording.books().totals.received.max(1);
+    let expected = recording.accounting().totals.received.max(1);
     let rows = write(recording, file, &mut |rows| {
         #[expect(clippy::cast_precision_loss, reason = "a share")]
         progress.reached(rows as f64 / expected as f64);

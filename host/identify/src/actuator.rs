@@ -21,7 +21,7 @@
 
 mod bands;
 mod derived;
-mod examined;
+mod explained_chirp;
 mod fit;
 mod impedance;
 mod mass;

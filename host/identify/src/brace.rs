@@ -35,7 +35,7 @@
 //! ```
 
 mod fit;
-mod found;
+mod identified;
 mod model;
 mod numbers;
 mod passing;
@@ -53,7 +53,7 @@ mod swing;
 mod visible;
 mod whole;
 
-pub use found::{Brace, Trace, TracePoint, identify};
+pub use identified::{Brace, Trace, TracePoint, identify};
 pub use prior::TORQUE_DEVIATION;
 pub use quantity::Quantity;
 pub use recording::{GRAVITY, Measured, Recording, Sample, Weight};

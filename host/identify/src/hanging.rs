@@ -25,5 +25,5 @@
 mod fit;
 mod way;
 
-pub use fit::{Found, Refusal, found};
+pub use fit::{HangingFit, Refusal, found};
 pub use way::{Mean, means};

@@ -13,7 +13,7 @@
 //! | to find | look in |
 //! |---|---|
 //! | ranges, ticks and their labels | [`Axis`] |
-//! | one or several pairs of axes above each other | [`Panel`], [`stack`] |
+//! | one or several pairs of axes above each other | [`Panel`], [`stack()`] |
 //! | lines, signs and text anywhere | [`Drawing`] |
 //! | how lines, signs and colours look | [`CurveStyle`], [`Marker`], [`palette`] |
 //! | a line of any length in bounded memory | [`Thinned`] |

@@ -36,7 +36,7 @@ mod choice;
 mod collector;
 mod course;
 mod envelope;
-mod examined;
+mod examiner_notes;
 mod fast_part;
 mod hysteresis;
 mod levels;

@@ -25,7 +25,7 @@ const MOST_LISTED: usize = 500;
 /// A question about recordings.
 pub(crate) struct Question {
     pub(crate) what: Asked,
-    pub(crate) reply: oneshot::Sender<Result<Found, String>>,
+    pub(crate) reply: oneshot::Sender<Result<ArchiveAnswer, String>>,
 }
 
 /// Content of a question.
@@ -45,7 +45,7 @@ pub(crate) enum Asked {
 }
 
 /// Answer to a question.
-pub(crate) enum Found {
+pub(crate) enum ArchiveAnswer {
     Facts(Value),
     Trace(Bytes),
 }
@@ -88,16 +88,16 @@ impl Archive {
         }
     }
 
-    fn answer(&mut self, what: &Asked) -> Result<Found, String> {
+    fn answer(&mut self, what: &Asked) -> Result<ArchiveAnswer, String> {
         match *what {
-            Asked::List => Ok(Found::Facts(self.list())),
+            Asked::List => Ok(ArchiveAnswer::Facts(self.list())),
             Asked::Open { recording } => {
                 // Again, if it has grown since.
                 self.open.retain(|(number, _)| *number != recording);
                 let mut facts = self.opened(recording)?.facts();
                 facts["id"] = json!(recording);
                 facts["name"] = json!(self.listed.get(place(recording)).map(|p| self.name_of(p)));
-                Ok(Found::Facts(facts))
+                Ok(ArchiveAnswer::Facts(facts))
             }
             Asked::Trace {
                 id,
@@ -116,7 +116,7 @@ impl Archive {
                     missing: 0,
                     masks: Masks::default(),
                 };
-                Ok(Found::Trace(frame(&header, &trace.bins)))
+                Ok(ArchiveAnswer::Trace(frame(&header, &trace.bins)))
             }
         }
     }

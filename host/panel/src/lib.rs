@@ -3,20 +3,20 @@
 //! A page on localhost: choose a knee, see what the hand does, stop it, hold a lesson.
 //!
 //! ```text
-//!  device ── Client ── keeper ── bins, 60 frames a second ──> server ══ WebSocket ══ pages
+//!  device ── Client ── device_thread ── bins, 60 frames a second ──> server ══ WebSocket ══ pages
 //!                        ↑  └ watchdog <── every frame is answered ──┘
 //!                        └──── orders of the page that has control
 //!                      archive: recordings, read in a thread of its own
 //! ```
 //!
-//! The keeper owns the client and runs in the caller's thread; the server and the archive
+//! The device thread owns the client and runs in the caller's thread; the server and the archive
 //! have a thread each. `docs/panel.md` lists what could be done to it, and the answers.
 //!
 //! | to find | look in |
 //! |---|---|
 //! | what is served, and to whom | `server.rs`, `guard.rs`, `pending.rs`, `tokens.rs`, `tickets.rs` |
 //! | the connection of a page | `socket.rs`, `request.rs`, `control.rs` |
-//! | what is done with the device | `keeper.rs` |
+//! | what is done with the device | `device_thread.rs` |
 //! | who turns torque off when a page hangs | `watchdog.rs` |
 //! | the layout of frames | `frame.rs` |
 //! | the tables that a page shows | `hello.rs`, `book.rs` |
@@ -31,10 +31,10 @@ mod archive;
 mod assets;
 mod book;
 mod control;
+mod device_thread;
 mod frame;
 mod guard;
 mod hello;
-mod keeper;
 pub mod lesson;
 pub mod live;
 mod panel;
@@ -52,6 +52,6 @@ mod tls;
 mod tokens;
 mod watchdog;
 
-pub use keeper::Program;
+pub use device_thread::Program;
 pub use panel::{Links, Panel, Settings, Source};
 pub use panel_error::PanelError;

@@ -1,9 +1,9 @@
 //! Starts the panel.
 
 use crate::archive::Archive;
+use crate::device_thread::{DeviceThread, Program};
 use crate::guard::Names;
 use crate::hello;
-use crate::keeper::{Keeper, Program};
 use crate::panel_error::PanelError;
 use crate::pending::Pending;
 use crate::server;
@@ -145,7 +145,7 @@ impl Panel {
             sessions,
             ..
         } = self;
-        Keeper::new(client, program, shared, inbox, sessions)?.run()
+        DeviceThread::new(client, program, shared, inbox, sessions)?.run()
     }
 
     /// Shows recordings until the program is asked to end.

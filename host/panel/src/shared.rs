@@ -1,7 +1,7 @@
 //! Data and channels that the threads of the panel share.
 //!
 //! ```text
-//!  keeper ── frames, latest ──> server ──> pages
+//!  device_thread ── frames, latest ──> server ──> pages
 //!    ↑  ↑                         │
 //!    │  └──────── orders ─────────┤
 //!    └──────── watchdog ──────────┘        archive <── questions about recordings

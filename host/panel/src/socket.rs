@@ -3,7 +3,7 @@
 //! One task reads and one writes: a page that does not read can still stop, and a page
 //! that hangs delays nobody.
 
-use crate::archive::{Asked, Found, Question};
+use crate::archive::{ArchiveAnswer, Asked, Question};
 use crate::book;
 use crate::control::{Holder, Page};
 use crate::request::{Message as FromPage, Request, Right};
@@ -214,7 +214,7 @@ async fn read(
 enum Answer {
     Known(Outcome),
     Ordered(oneshot::Receiver<Outcome>),
-    Asked(oneshot::Receiver<Result<Found, String>>),
+    Asked(oneshot::Receiver<Result<ArchiveAnswer, String>>),
 }
 
 impl Answer {
@@ -223,8 +223,8 @@ impl Answer {
             Self::Known(outcome) => outcome,
             Self::Ordered(outcome) => outcome.await.unwrap_or_else(|_| Err(gone())),
             Self::Asked(found) => match found.await.unwrap_or_else(|_| Err(gone())) {
-                Ok(Found::Trace(frame)) => return Message::Binary(frame),
-                Ok(Found::Facts(facts)) => Ok(facts),
+                Ok(ArchiveAnswer::Trace(frame)) => return Message::Binary(frame),
+                Ok(ArchiveAnswer::Facts(facts)) => Ok(facts),
                 Err(error) => Err(error),
             },
         };

@@ -19,8 +19,8 @@
 //! formats.
 #![forbid(unsafe_code)]
 
+mod accounting;
 mod arming;
-mod books;
 mod column;
 mod damage;
 mod ending;
@@ -37,8 +37,8 @@ mod row;
 mod samples;
 mod shaft;
 
+pub use accounting::{Begin, Cause, Gap, Recount, SampleAccounting, Segment, Totals};
 pub use arming::ArmingPushes;
-pub use books::{Begin, Books, Cause, Gap, Recount, Segment, Totals};
 pub use column::{COLUMNS, Cell, Column};
 pub use damage::Damage;
 pub use ending::{EndCause, Ending};

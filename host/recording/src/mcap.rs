@@ -225,7 +225,7 @@ impl<'f> Messages<'f> {
             ("comms_serial".to_owned(), about.comms.serial.clone()),
             (
                 "books".to_owned(),
-                json!(recording.books().totals).to_string(),
+                json!(recording.accounting().totals).to_string(),
             ),
         ]);
         if let Some(drive) = &about.drive {

@@ -20,7 +20,7 @@ mod seal;
 mod words;
 mod writer;
 
-use crate::books::Books;
+use crate::accounting::SampleAccounting;
 use crate::ending::Ending;
 use crate::metadata::Metadata;
 use crate::parameters::History;
@@ -53,7 +53,7 @@ pub(crate) struct About {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) ending: Option<Ending>,
     pub(crate) parameters: History,
-    pub(crate) books: Books,
+    pub(crate) books: SampleAccounting,
     /// Damage of the file that it was made of, in sentences.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) damage: Vec<String>,

@@ -1,6 +1,6 @@
 //! Reading of a recording, in whichever format it is.
 
-use crate::books::Books;
+use crate::accounting::SampleAccounting;
 use crate::damage::Damage;
 use crate::ending::Ending;
 use crate::findings::Findings;
@@ -79,7 +79,7 @@ pub enum Format {
 pub struct Recording {
     path: PathBuf,
     metadata: Metadata,
-    books: Books,
+    books: SampleAccounting,
     history: History,
     is_complete: bool,
     ending: Option<Ending>,
@@ -178,7 +178,7 @@ impl Recording {
     }
 
     /// The books, counted in what is readable.
-    pub fn books(&self) -> &Books {
+    pub fn accounting(&self) -> &SampleAccounting {
         &self.books
     }
 

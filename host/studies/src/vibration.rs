@@ -23,7 +23,7 @@ use crepitus_plant::spectrum::cross::{Cross, Likeness};
 use crepitus_scene::Scene;
 use crepitus_scene::run::step_count;
 use serde::Serialize;
-use signals::{Kept, record};
+use signals::{SettledSignals, record};
 
 /// The band that is compared, Hz: below it the arm moves, above it one hears.
 pub const BAND_HZ: (f64, f64) = (15.0, 500.0);
@@ -211,12 +211,12 @@ pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<VibrationStudy, Vib
 
 /// The three spectra, if all three ran.
 fn spectra(
-    bare: Option<&Kept>,
-    alone: Option<&Kept>,
-    device: Option<&Kept>,
+    bare: Option<&SettledSignals>,
+    alone: Option<&SettledSignals>,
+    device: Option<&SettledSignals>,
 ) -> Option<Vec<(f64, [f64; 3])>> {
     let (bare, alone, device) = (bare?, alone?, device?);
-    let lines = |x: &Kept, y: &Kept| {
+    let lines = |x: &SettledSignals, y: &SettledSignals| {
         let cross = Cross::new(&x.acceleration, &y.acceleration, x.step_s)?;
         Some(cross.lines(BAND_HZ.1))
     };
@@ -251,9 +251,9 @@ fn check(scene: &Scene) -> Result<(), VibrationError> {
 
 fn row(
     step: Step,
-    free: &Result<Kept, String>,
-    held: Option<&Result<Kept, String>>,
-    bare: Option<&Kept>,
+    free: &Result<SettledSignals, String>,
+    held: Option<&Result<SettledSignals, String>>,
+    bare: Option<&SettledSignals>,
 ) -> Row {
     let measured = match (free, held) {
         (Ok(free), None) => Ok(measure(free, None, bare)),
@@ -271,7 +271,11 @@ fn row(
     }
 }
 
-fn measure(free: &Kept, held: Option<&Kept>, bare: Option<&Kept>) -> Measured {
+fn measure(
+    free: &SettledSignals,
+    held: Option<&SettledSignals>,
+    bare: Option<&SettledSignals>,
+) -> Measured {
     let (low, high) = BAND_HZ;
     let compared = |x: &[f64], y: &[f64]| Cross::new(x, y, free.step_s);
     let own = compared(&free.acceleration, &free.acceleration);

@@ -40,7 +40,7 @@ use crepitus_studies::sampling::Sampling;
 
 /// The joint's knowledge of the shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Sight {
+enum Sensing {
     True,
     Counts,
 }
@@ -54,34 +54,34 @@ struct Errors {
     floor: f64,
 }
 
-fn errors(scene: &StudyScene, sight: Sight, step_s: f64) -> Errors {
+fn errors(scene: &StudyScene, sensing: Sensing, step_s: f64) -> Errors {
     // The device's precision behind its encoder, the study's best without.
-    match sight {
-        Sight::True => of::<f64>(scene, sight, step_s),
-        Sight::Counts => of::<f32>(scene, sight, step_s),
+    match sensing {
+        Sensing::True => of::<f64>(scene, sensing, step_s),
+        Sensing::Counts => of::<f32>(scene, sensing, step_s),
     }
 }
 
-fn of<F: Real>(scene: &StudyScene, sight: Sight, step_s: f64) -> Errors {
+fn of<F: Real>(scene: &StudyScene, sensing: Sensing, step_s: f64) -> Errors {
     let coefficients = StepCoefficients::<F>::new(&scene.settings, step_s).unwrap();
     let omega = F::from_f64(scene.motion.at(0.0).omega_rad_s);
     match scene.settings.convention {
         Convention::Frozen => along(
             Frozen::<F, ExactEvents>::new(coefficients, omega),
             scene,
-            sight,
+            sensing,
             step_s,
         ),
         Convention::Paper => along(
             VelocityMatch::<F, Paper, Exact<F>, ExactEvents>::new(coefficients, omega),
             scene,
-            sight,
+            sensing,
             step_s,
         ),
         Convention::Physical => along(
             VelocityMatch::<F, Physical, Exact<F>, ExactEvents>::new(coefficients, omega),
             scene,
-            sight,
+            sensing,
             step_s,
         ),
     }
@@ -90,7 +90,7 @@ fn of<F: Real>(scene: &StudyScene, sight: Sight, step_s: f64) -> Errors {
 fn along<F: Real, J: StickSlip<F> + Clone>(
     mut joint: J,
     scene: &StudyScene,
-    sight: Sight,
+    sensing: Sensing,
     step_s: f64,
 ) -> Errors {
     let sampling = Sampling::new(&scene.motion, scene.duration_s, step_s);
@@ -117,9 +117,9 @@ fn along<F: Real, J: StickSlip<F> + Clone>(
             *sum += tick.mean_square(shown_nm);
         }
         walk.fill(&mut chunk, 1);
-        let shaft = match sight {
-            Sight::True => chunk[0],
-            Sight::Counts => reader.read(count(n + 1)),
+        let shaft = match sensing {
+            Sensing::True => chunk[0],
+            Sensing::Counts => reader.read(count(n + 1)),
         };
         joint.step(&shaft, |_| {});
         omega = shaft.omega_end_rad_s;
@@ -189,7 +189,7 @@ fn at_a_constant_speed_all_three_are_the_closed_forms() {
                 duration_s: 60.0,
                 ..scene.clone()
             };
-            let found = errors(&scene, Sight::True, step_s);
+            let found = errors(&scene, Sensing::True, step_s);
             let expected = closed_forms(&scene, omega_rad_s, step_s);
             for (found, expected) in [found.joint, found.half_tick, found.next_tick]
                 .into_iter()
@@ -214,12 +214,12 @@ fn on_the_studied_motions_half_a_tick_wins_next_to_nothing() {
     println!(
         "held error at 50 µs, mN·m RMS: as it is, half a tick ahead, mean of the next tick; the floor"
     );
-    for sight in [Sight::True, Sight::Counts] {
+    for sensing in [Sensing::True, Sensing::Counts] {
         let (mut half, mut next, mut count) = (0.0, 0.0, 0.0);
         for scene in standard().unwrap() {
-            let e = errors(&scene, sight, 5e-5);
+            let e = errors(&scene, sensing, 5e-5);
             println!(
-                "{sight:?}, {}, {}: {:.3}, {:.3} ({:+.1} %), {:.3} ({:+.1} %); {:.3}",
+                "{sensing:?}, {}, {}: {:.3}, {:.3} ({:+.1} %), {:.3} ({:+.1} %); {:.3}",
                 scene.name,
                 scene.convention(),
                 1e3 * e.joint,
@@ -234,12 +234,12 @@ fn on_the_studied_motions_half_a_tick_wins_next_to_nothing() {
             count += 1.0;
             assert!(e.half_tick > 0.95 * e.joint, "{e:?}");
             // A steady speed that is known leaves nothing better.
-            if sight == Sight::True && scene.name.starts_with("constant") {
+            if sensing == Sensing::True && scene.name.starts_with("constant") {
                 assert!(e.next_tick < 1.001 * e.floor, "{e:?}");
             }
         }
         println!(
-            "{sight:?}, in the mean: half a tick {:+.1} %, the next tick {:+.1} %",
+            "{sensing:?}, in the mean: half a tick {:+.1} %, the next tick {:+.1} %",
             100.0 * (half / count - 1.0),
             100.0 * (next / count - 1.0)
         );

@@ -197,7 +197,7 @@ fn swings(stronger: f64, gear: &str, cuff: &str, late_ticks: usize) -> (f64, f64
         VibrationActuator, VibrationActuatorSettings,
     };
     use crepitus_model::render::effects::{DeviceEffect, Timing};
-    use crepitus_model::render::position::Sight;
+    use crepitus_model::render::position::Sensing;
     let text = "version = 1\ntitle = \"loop\"\nduration_s = 1.0\n[motion]\nkind = \"released\"\nfrom_deg = 90.02\n\
                 [solver]\nkind = \"exact-events\"\nstep_s = 5e-5\n[effects.drivetrain]\nGEAR\n[effects.cuff]\nCUFF\n[effects.limb]\npassive = \"none\"\n\
                 [effects.shell]\n[effects.reaction-mass]\n";
@@ -214,7 +214,7 @@ fn swings(stronger: f64, gear: &str, cuff: &str, late_ticks: usize) -> (f64, f64
     let timing = Timing {
         step_s: 5e-5,
         delay_ticks: 1,
-        sight: Sight::IDEAL,
+        sensing: Sensing::IDEAL,
     };
     let mut law = VibrationActuator::<f64>::new(
         VibrationActuator::<f64>::coefficients(&settings, &timing).expect("in range"),

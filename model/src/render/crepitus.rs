@@ -13,7 +13,7 @@ use super::input_check::{Checked, InputCheck, InputLimits, Sample};
 use super::position::Position;
 use super::ramp::Ramp;
 use super::turn_back::TurnBack;
-use super::{Limit, Pipeline, Seen, Shown, Symptom, Torque};
+use super::{Limit, Pipeline, ShaftEstimate, Shown, Symptom, Torque};
 use crate::joint::shaft::Linear;
 use crate::joint::{Event, StepCoefficients, StickSlip};
 use crate::real::Real;
@@ -141,7 +141,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Renderer<F, L> {
     #[inline]
     pub fn render(&mut self, sample: &Sample<F>, on_event: impl FnMut(Event<F>)) -> Shown<F> {
         // No later stage uses the rest.
-        let seen = Seen {
+        let seen = ShaftEstimate {
             sample: *sample,
             omega_rad_s: F::ZERO,
             place: Position::at(0),

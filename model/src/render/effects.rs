@@ -13,8 +13,8 @@ pub mod clonus;
 pub mod cogwheel;
 mod faded;
 pub mod friction_compensation;
-mod kept;
 pub mod lead_pipe;
+mod outliving;
 mod phases;
 pub mod play;
 pub mod range_limit;
@@ -28,15 +28,15 @@ mod together;
 pub mod vibration_actuator;
 
 pub use faded::Faded;
-pub use kept::Kept;
+pub use outliving::Outliving;
 pub use phases::{PhaseSpec, Phases};
 pub use slewed::Slewed;
 pub use static_limits::Reach;
 pub use together::MOST_SHARE_AT_A_WALL;
 
 use super::input_check::Checked;
-use super::position::{Position, Scale, Sight, Travel};
-use super::{Addition, Seen, Shown};
+use super::position::{Position, Scale, Sensing, Travel};
+use super::{Addition, ShaftEstimate, Shown};
 use crate::joint::{LONGEST_STEP_S, SettingsError};
 use crate::parameters::{
     Choice, Chosen, Parameter, ParameterSpec, Source, Tabled, filled, same, switch,
@@ -118,8 +118,8 @@ pub struct Timing {
     pub step_s: f64,
     /// The most ticks between a sample and the torque that answers it.
     pub delay_ticks: usize,
-    /// Sight that the device has of the joint.
-    pub sight: Sight,
+    /// Sensing that the device has of the joint.
+    pub sensing: Sensing,
 }
 
 impl Timing {
@@ -130,7 +130,7 @@ impl Timing {
     pub fn scale<F: Real>(&self) -> Result<Scale<F>, SettingsError> {
         let step_s = self.step_s;
         if step_s > 0.0 && step_s <= LONGEST_STEP_S {
-            Ok(Scale::new(&self.sight, step_s))
+            Ok(Scale::new(&self.sensing, step_s))
         } else {
             Err(SettingsError::Step { step_s })
         }
@@ -160,7 +160,7 @@ impl<'a, F: Real> Tick<'a, F> {
     /// Input from this sample.
     #[inline]
     pub fn of(
-        seen: &Seen<F>,
+        seen: &ShaftEstimate<F>,
         input: &Checked<F>,
         travel: Option<&'a Travel<F>>,
         paid_share: F,
@@ -240,7 +240,7 @@ pub trait DeviceEffect<F: Real>: Sized {
     type Coefficients: Copy + core::fmt::Debug + PartialEq;
 
     /// Method by which it is switched and changed while the device runs: [`Slewed`],
-    /// [`Faded`] or [`Kept`].
+    /// [`Faded`] or [`Outliving`].
     type Switched: Switched<F, Self>;
 
     /// Its description.
@@ -293,7 +293,7 @@ pub trait DeviceEffect<F: Real>: Sized {
 impl<F: Real, L: Law<Real = F>> DeviceEffect<F> for L {
     type Settings = L::Settings;
     type Coefficients = L::Coefficients;
-    type Switched = Kept<F, L>;
+    type Switched = Outliving<F, L>;
 
     const SPEC: EffectSpec = L::SPEC;
     const IS_SYMPTOM: bool = true;

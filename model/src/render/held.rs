@@ -81,7 +81,7 @@ impl<F: Real, J: StickSlip<F>> Held<F, J> {
         self.is_holding = false;
     }
 
-    /// The torque shown: the joint's, or while the shaft is out of sight what
+    /// The torque shown: the joint's, or while the shaft is out of sensing what
     /// is left of its last, N·m.
     #[inline]
     pub fn torque_nm(&self) -> F {

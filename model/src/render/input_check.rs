@@ -39,7 +39,7 @@ pub enum Checked<F> {
 
 impl<F: Real> Checked<F> {
     /// Travel of the shaft since it was seen last, rad; `None` while it
-    /// is out of sight.
+    /// is out of sensing.
     #[inline]
     pub fn travel_rad(&self) -> Option<F> {
         match self {

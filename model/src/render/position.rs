@@ -3,7 +3,7 @@
 //! An angle is a whole number of encoder counts and a rest. A difference of two
 //! is then exact to a count's rounding however far the joint is from its zero:
 //! nothing drifts, and a counter that wraps does no harm. A joint that is seen
-//! without an encoder has fine counts of its own, [`Sight::IDEAL`].
+//! without an encoder has fine counts of its own, [`Sensing::IDEAL`].
 
 use crate::control::encoder::EncoderSettings;
 use crate::joint::ShaftStep;
@@ -49,7 +49,7 @@ impl<F: Real> Position<F> {
 
 /// Resolution, flicker and velocity lag with which a device sees its joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
+pub struct Sensing {
     /// Angle of a count, rad.
     pub rad_per_count: f64,
     /// Largest flicker of the angle of a joint at rest, rad.
@@ -58,7 +58,7 @@ pub struct Sight {
     pub velocity_lag_s: f64,
 }
 
-impl Sight {
+impl Sensing {
     /// The true angle and velocity. Its counts are a power of two, so that angles
     /// are split without rounding.
     pub const IDEAL: Self = Self {
@@ -67,7 +67,7 @@ impl Sight {
         velocity_lag_s: 0.0,
     };
 
-    /// Sight through an encoder and its estimate of the velocity.
+    /// Sensing through an encoder and its estimate of the velocity.
     pub fn of_encoder(settings: &EncoderSettings) -> Self {
         let rad_per_count = settings.rad_per_count();
         Self {
@@ -105,9 +105,9 @@ pub struct Scale<F> {
 
 impl<F: Real> Scale<F> {
     /// Scale for ticks of `step_s`.
-    pub fn new(sight: &Sight, step_s: f64) -> Self {
+    pub fn new(sensing: &Sensing, step_s: f64) -> Self {
         Self {
-            rad_per_count: F::from_f64(sight.rad_per_count),
+            rad_per_count: F::from_f64(sensing.rad_per_count),
             half_step_s: F::from_f64(0.5 * step_s),
         }
     }
@@ -284,19 +284,22 @@ pub(crate) mod tests {
 
     #[test]
     fn an_angle_is_split_and_its_differences_are_exact() {
-        for sight in [Sight::IDEAL, Sight::of_encoder(&EncoderSettings::default())] {
+        for sensing in [
+            Sensing::IDEAL,
+            Sensing::of_encoder(&EncoderSettings::default()),
+        ] {
             for (a, b) in [(2.1, -0.3), (1e-9, 0.0), (-700.0, 700.0)] {
-                let (at, from) = (sight.position::<f64>(a), sight.position::<f64>(b));
-                assert!(at.rest_rad.abs() < sight.rad_per_count);
-                let mirrored = sight.position::<f64>(-a);
+                let (at, from) = (sensing.position::<f64>(a), sensing.position::<f64>(b));
+                assert!(at.rest_rad.abs() < sensing.rad_per_count);
+                let mirrored = sensing.position::<f64>(-a);
                 assert_eq!(
                     (mirrored.count, mirrored.rest_rad),
                     (-at.count, -at.rest_rad)
                 );
-                let beyond = at.beyond(&from, sight.rad_per_count);
+                let beyond = at.beyond(&from, sensing.rad_per_count);
                 assert!((beyond - (a - b)).abs() < 2e-13, "{beyond} {}", a - b);
-                let single = |x| sight.position::<f32>(x);
-                let count_rad = f32::from_f64(sight.rad_per_count);
+                let single = |x| sensing.position::<f32>(x);
+                let count_rad = f32::from_f64(sensing.rad_per_count);
                 let near = single(a + 1e-3).beyond(&single(a), count_rad);
                 assert!((f64::from(near) - 1e-3).abs() < 2e-10, "{near}");
             }
@@ -319,7 +322,7 @@ pub(crate) mod tests {
                 late_s += (acceleration * time_s - reader.omega_rad_s()) / acceleration / 1000.0;
             }
         }
-        let expected_s = Sight::of_encoder(&settings).velocity_lag_s;
+        let expected_s = Sensing::of_encoder(&settings).velocity_lag_s;
         assert!(
             (late_s - expected_s).abs() < step_s,
             "{late_s} {expected_s}"
@@ -328,14 +331,14 @@ pub(crate) mod tests {
 
     /// Travel from 1 rad with Δφ = (Ω₀ + Ω₁)·h/2.
     pub(crate) fn travel(from_rad_s: f64, to_rad_s: f64) -> Travel<f64> {
-        let scale = Scale::new(&Sight::IDEAL, 5e-5);
+        let scale = Scale::new(&Sensing::IDEAL, 5e-5);
         let delta = (from_rad_s + to_rad_s) * scale.half_step_s;
         let shaft = ShaftStep {
             delta_phi_rad: delta,
             omega_start_rad_s: from_rad_s,
             omega_end_rad_s: to_rad_s,
         };
-        let to = Sight::IDEAL.position(1.0 + delta);
+        let to = Sensing::IDEAL.position(1.0 + delta);
         Travel::of(&Checked::Step(shaft), &to, &scale).unwrap()
     }
 
@@ -368,8 +371,8 @@ pub(crate) mod tests {
             missed: 2,
             omega_rad_s: 1.0,
         };
-        let scale = Scale::<f64>::new(&Sight::IDEAL, 5e-5);
-        let to = Sight::IDEAL.position(0.5);
+        let scale = Scale::<f64>::new(&Sensing::IDEAL, 5e-5);
+        let to = Sensing::IDEAL.position(0.5);
         for input in [Checked::CatchUp(gap), Checked::Resume(gap)] {
             let travel = Travel::of(&input, &to, &scale).unwrap();
             assert_eq!((travel.ticks, travel.omega_start_rad_s), (3, 1.0));
@@ -382,9 +385,9 @@ pub(crate) mod tests {
     /// Decay of the longest torque, over all of the longest release, in f32.
     #[test]
     fn a_long_decay_keeps_its_digits() {
-        let scale = Scale::<f32>::new(&Sight::IDEAL, 5e-5);
+        let scale = Scale::<f32>::new(&Sensing::IDEAL, 5e-5);
         let step = Checked::Step(ShaftStep::default());
-        let travel = Travel::of(&step, &Sight::IDEAL.position(0.5), &scale).unwrap();
+        let travel = Travel::of(&step, &Sensing::IDEAL.position(0.5), &scale).unwrap();
         for release_s in [0.01, 0.06, 0.25, 0.5, 1.0] {
             let rate = -5e-5 / release_s;
             let lost = f32::from_f64(-libm::expm1(rate));
@@ -401,7 +404,7 @@ pub(crate) mod tests {
     #[test]
     fn what_no_joint_can_have_is_no_travel() {
         const MOST: f64 = 1e9;
-        let scale = Scale::<f64>::new(&Sight::IDEAL, 5e-5);
+        let scale = Scale::<f64>::new(&Sensing::IDEAL, 5e-5);
         let of = |delta_rad: f64, start_rad_s: f64, end_rad_s: f64, rest_rad: f64| {
             let shaft = ShaftStep {
                 delta_phi_rad: delta_rad,

@@ -6,7 +6,7 @@ use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::symptom::Word;
 use crepitus_model::render::effects::texture::TextureSettings;
-use crepitus_model::render::position::{Position, Sight};
+use crepitus_model::render::position::{Position, Sensing};
 use crepitus_model::{Real, Sample, ShaftStep};
 
 /// Parts of a count.
@@ -15,7 +15,7 @@ const PARTS: i32 = 64;
 /// A spring over regular asperities.
 struct Spring {
     settings: TextureSettings,
-    sight: Sight,
+    sensing: Sensing,
     /// The asperity below.
     below: i32,
     /// Place of the joint, in parts of a count.
@@ -27,10 +27,10 @@ struct Spring {
 }
 
 impl Spring {
-    fn new(settings: TextureSettings, sight: Sight, count: i32) -> Self {
+    fn new(settings: TextureSettings, sensing: Sensing, count: i32) -> Self {
         let mut spring = Self {
             settings,
-            sight,
+            sensing,
             below: 0,
             at: count * PARTS,
             nm: 0.0,
@@ -46,7 +46,7 @@ impl Spring {
     }
 
     fn angle_rad(&self) -> f64 {
-        f64::from(self.at) / f64::from(PARTS) * self.sight.rad_per_count
+        f64::from(self.at) / f64::from(PARTS) * self.sensing.rad_per_count
     }
 
     /// Whether the asperity of this number is there: patches of a pitch each are counted, not divided.
@@ -86,15 +86,15 @@ impl Spring {
 
     /// Goes on by so many counts.
     fn go(&mut self, counts: i32) -> f64 {
-        let part_rad = self.sight.rad_per_count / f64::from(PARTS);
-        let end_rad = self.angle_rad() + f64::from(counts) * self.sight.rad_per_count;
+        let part_rad = self.sensing.rad_per_count / f64::from(PARTS);
+        let end_rad = self.angle_rad() + f64::from(counts) * self.sensing.rad_per_count;
         for _ in 0..(counts * PARTS).abs() {
             let way = counts.signum();
             self.at += way;
             let below_rad = f64::from(self.below) * self.pitch_rad();
             let beyond_rad = self.angle_rad() - below_rad;
             // Downwards a tick that ends within the encoder's noise has not passed it.
-            let is_noise = end_rad - below_rad >= -self.sight.flicker_rad;
+            let is_noise = end_rad - below_rad >= -self.sensing.flicker_rad;
             let passed = if way > 0 {
                 i32::from(beyond_rad >= self.pitch_rad())
             } else {
@@ -139,7 +139,7 @@ fn hand(seed: u32) -> impl Iterator<Item = i32> {
 }
 
 fn compare<F: Real>(settings: TextureSettings, from: i32, within_nm: f64) -> u32 {
-    let sight = Sight::of_encoder(&EncoderSettings::default());
+    let sensing = Sensing::of_encoder(&EncoderSettings::default());
     let effects = EffectSettings {
         texture: Some(settings),
         ..EffectSettings::default()
@@ -147,11 +147,11 @@ fn compare<F: Real>(settings: TextureSettings, from: i32, within_nm: f64) -> u32
     let mut snaps = 0;
     for seed in 0..20 {
         let mut count = from;
-        let mut rig = Rig::<F>::new(effects, sight, f64::from(from) * sight.rad_per_count);
-        let mut spring = Spring::new(settings, sight, from);
+        let mut rig = Rig::<F>::new(effects, sensing, f64::from(from) * sensing.rad_per_count);
+        let mut spring = Spring::new(settings, sensing, from);
         for (tick, by) in hand(seed).enumerate() {
             count += by;
-            let travel_rad = f64::from(by) * sight.rad_per_count;
+            let travel_rad = f64::from(by) * sensing.rad_per_count;
             let omega = F::from_f64(travel_rad / TICK_S);
             let shaft = ShaftStep {
                 delta_phi_rad: F::from_f64(travel_rad),

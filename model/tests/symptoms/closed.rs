@@ -410,7 +410,7 @@ fn a_gap_leaves_a_reflex_as_late_as_it_is() {
     for tick in 0..12_000 {
         let nm = whole.step(at(tick), at(tick + 1), at(tick + 1).0 - at(tick).0);
         if (9_000..9_002).contains(&tick) || (11_000..11_010).contains(&tick) {
-            let place = gaps.timing.sight.position(at(seen).0);
+            let place = gaps.timing.sensing.position(at(seen).0);
             gaps.tick(Sample::Lost, place);
             continue;
         }

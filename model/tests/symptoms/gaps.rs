@@ -10,8 +10,8 @@ use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_model::render::effects::symptom::Word;
 use crepitus_model::render::effects::texture::TextureSettings;
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
-use crepitus_model::render::position::Sight;
-use crepitus_model::render::{Addition, Check, Seen, Shown};
+use crepitus_model::render::position::Sensing;
+use crepitus_model::render::{Addition, Check, ShaftEstimate, Shown};
 use crepitus_model::{Sample, ShaftStep};
 
 fn lead_pipe(settings: LeadPipeSettings) -> EffectSettings {
@@ -33,7 +33,7 @@ fn moved(rig: &mut Rig<f64>, from_rad: f64, ticks: u32) -> (f64, f64) {
 }
 
 fn lost(rig: &mut Rig<f64>, at_rad: f64, ticks: u32) -> f64 {
-    let place = Sight::IDEAL.position(at_rad);
+    let place = Sensing::IDEAL.position(at_rad);
     (0..ticks).fold(0.0, |_, _| rig.tick(Sample::Lost, place))
 }
 
@@ -468,13 +468,13 @@ fn around_a_refused_sample(effects: &mut impl Addition<f64>) -> (f64, f64) {
         let phase = 25.0 * f64::from(tick) * TICK_S;
         (1.05 + 0.3 * phase.sin(), 7.5 * phase.cos())
     };
-    effects.rest(&Sight::IDEAL.position(motion(0).0));
+    effects.rest(&Sensing::IDEAL.position(motion(0).0));
     let mut tick = |shaft: ShaftStep<f64>, at_rad: f64| {
         let sample = Sample::Taken(shaft);
-        let seen = Seen {
+        let seen = ShaftEstimate {
             sample,
             omega_rad_s: 0.0,
-            place: Sight::IDEAL.position(at_rad),
+            place: Sensing::IDEAL.position(at_rad),
             is_driven: true,
         };
         let mut shown = Shown::nothing();
@@ -510,7 +510,7 @@ fn a_sample_that_is_refused_fills_no_tank() {
         }),
         ..EffectSettings::default()
     };
-    let mut alone = reflex.laws::<f64>(&timing(Sight::IDEAL)).unwrap();
+    let mut alone = reflex.laws::<f64>(&timing(Sensing::IDEAL)).unwrap();
     let mut armed = only::<f64>(reflex, 60.0).effects;
     for (before_nm, after_nm) in [
         around_a_refused_sample(&mut alone),

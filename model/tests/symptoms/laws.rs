@@ -10,7 +10,7 @@ use crepitus_model::render::effects::clonus::ClonusSettings;
 use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_model::render::effects::{EffectSettings, TANK_J, TANK_REFILL_W};
-use crepitus_model::render::position::Sight;
+use crepitus_model::render::position::Sensing;
 use proptest::prelude::*;
 
 proptest! {
@@ -70,7 +70,7 @@ proptest! {
         points in tremble(),
     ) {
         let angles = hand(&points);
-        let mut rig = Rig::<f64>::new(symptom(kind, &x), Sight::IDEAL, angles[0]);
+        let mut rig = Rig::<f64>::new(symptom(kind, &x), Sensing::IDEAL, angles[0]);
         let mut nm = 0.0;
         for pair in angles.windows(2) {
             let omega = (pair[1] - pair[0]) / TICK_S;
@@ -141,7 +141,7 @@ proptest! {
     ) {
         let settings = symptom(kind, &x);
         let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e30, -1e30, 1e-42, f64::MAX];
-        let mut rig = Rig::<f32>::new(settings, Sight::IDEAL, 1.0);
+        let mut rig = Rig::<f32>::new(settings, Sensing::IDEAL, 1.0);
         let mut phi = 1.0;
         // No torque of a symptom with these parameters is beyond.
         let most_nm = settings.largest_torque_nm(None) + 10.0 * 3.0;

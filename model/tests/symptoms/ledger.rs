@@ -13,7 +13,7 @@ use super::rig::*;
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::joint::MOST_STIFFNESS_NM_PER_RAD;
 use crepitus_model::render::effects::EffectSettings;
-use crepitus_model::render::position::{Position, Sight};
+use crepitus_model::render::position::{Position, Sensing};
 use crepitus_model::{Real, Sample};
 
 /// The energy that a hand got back, against the bound.
@@ -92,15 +92,15 @@ pub(crate) struct Hand<'a> {
 /// Energy that a hand gets back beyond the bound, J, and the largest torque, N·m.
 pub(crate) fn excess<F: Real>(settings: EffectSettings, hand: &Hand<'_>) -> (f64, f64) {
     let encoder = EncoderSettings::default();
-    let (sight, spare_rad) = if hand.counts {
-        (Sight::of_encoder(&encoder), encoder.rad_per_count())
+    let (sensing, spare_rad) = if hand.counts {
+        (Sensing::of_encoder(&encoder), encoder.rad_per_count())
     } else {
-        (Sight::IDEAL, 0.0)
+        (Sensing::IDEAL, 0.0)
     };
     let count = |rad: f64| (rad / encoder.rad_per_count()).floor() as i32;
     let angles = hand.angles;
     let mut reader = EncoderReader::<F>::new(&encoder, TICK_S, count(angles[0]), F::ZERO).unwrap();
-    let mut rig = Rig::<F>::new(settings, sight, angles[0]);
+    let mut rig = Rig::<F>::new(settings, sensing, angles[0]);
     let mut ledger = Ledger::new(hand.delay);
     let (mut seen_rad, mut omega, mut largest, mut last_nm) = (angles[0], 0.0, 0.0_f64, 0.0_f64);
     let mut stiffness = settings.stiffness_nm_per_rad(None);
@@ -132,7 +132,7 @@ pub(crate) fn excess<F: Real>(settings: EffectSettings, hand: &Hand<'_>) -> (f64
             (seen_rad, omega) = to;
             nm
         } else {
-            rig.tick(Sample::Lost, sight.position(seen_rad))
+            rig.tick(Sample::Lost, sensing.position(seen_rad))
         };
         if !rig.settling {
             ledger.leaves_j = 0.0;

@@ -10,7 +10,7 @@ use crepitus_model::render::effects::cogwheel::CogwheelSettings;
 use crepitus_model::render::effects::lead_pipe::LeadPipeSettings;
 use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
-use crepitus_model::render::position::Sight;
+use crepitus_model::render::position::Sensing;
 use crepitus_model::{Real, Sample};
 use proptest::prelude::*;
 
@@ -88,8 +88,9 @@ fn mirrors<F: Real>(
     angles: &[f64],
     gap: (usize, usize),
 ) -> Result<(), TestCaseError> {
-    let [mut one, mut two] = both.map(|settings| Rig::<F>::new(settings, Sight::IDEAL, angles[0]));
-    two.effects.rest(&Sight::IDEAL.position(-angles[0]));
+    let [mut one, mut two] =
+        both.map(|settings| Rig::<F>::new(settings, Sensing::IDEAL, angles[0]));
+    two.effects.rest(&Sensing::IDEAL.position(-angles[0]));
     let (mut omega, mut seen) = (0.0, angles[0]);
     for (n, pair) in angles.windows(2).enumerate() {
         let middle = angles.len() / 2;
@@ -101,7 +102,7 @@ fn mirrors<F: Real>(
         }
         let end = (pair[1] - pair[0]) / TICK_S;
         let (nm, image_nm) = if is_lost {
-            let place = |rad| Sight::IDEAL.position(rad);
+            let place = |rad| Sensing::IDEAL.position(rad);
             (
                 one.tick(Sample::Lost, place(seen)),
                 two.tick(Sample::Lost, place(-seen)),

@@ -11,7 +11,7 @@ use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_model::render::effects::symptom::Word;
 use crepitus_model::render::effects::texture::TextureSettings;
-use crepitus_model::render::position::{Position, Sight};
+use crepitus_model::render::position::{Position, Sensing};
 
 /// A symptom, and an examination that brings it through its phases.
 struct Case {
@@ -178,7 +178,7 @@ fn a_torque_is_held_for_a_millisecond_without_samples_and_then_released() {
         let run = rig.run(case.torque_s, motion(&case));
         let (_, at_rad, nm) = *run.rows.last().unwrap();
         assert!(nm.abs() > 0.05, "{nm}");
-        let place = Sight::IDEAL.position(at_rad);
+        let place = Sensing::IDEAL.position(at_rad);
         for _ in 0..20 {
             assert_eq!(rig.tick(Sample::Lost, place), nm, "{:?}", rig.phase());
         }
@@ -203,7 +203,7 @@ fn a_beat_within_a_gap_has_its_time() {
     assert!(rig.words.is_empty());
     let [from, to] = [3_665.0, 3_668.0].map(|tick| motion(tick * TICK_S));
     for _ in 0..2 {
-        rig.tick(Sample::Lost, Sight::IDEAL.position(from.0));
+        rig.tick(Sample::Lost, Sensing::IDEAL.position(from.0));
     }
     rig.step(from, to, to.0 - from.0);
     let [(Word::Beat, share)] = rig.words[..] else {
@@ -232,7 +232,7 @@ fn whatever_a_gap_hides_of_clonus_happens_in_its_time() {
             let at = |tick: u32| motion(f64::from(tick) * TICK_S);
             let (from, to) = (at(tick), at(tick + ticks));
             for _ in 1..ticks {
-                rig.tick(Sample::Lost, Sight::IDEAL.position(from.0));
+                rig.tick(Sample::Lost, Sensing::IDEAL.position(from.0));
             }
             let nm = rig.step(from, to, to.0 - from.0);
             near(nm, run.rows[(tick + ticks) as usize - 1].2, 1e-5);
@@ -289,7 +289,7 @@ fn a_beat_and_the_end_of_a_stretch_within_one_gap_come_in_their_order() {
         rig.run(f64::from(first) * TICK_S, motion);
         let [from, to] = [first, first + 12].map(|tick| motion(f64::from(tick) * TICK_S));
         for _ in 1..12 {
-            rig.tick(Sample::Lost, Sight::IDEAL.position(from.0));
+            rig.tick(Sample::Lost, Sensing::IDEAL.position(from.0));
         }
         let nm = rig.step(from, to, to.0 - from.0);
         near(nm, run.rows[first as usize + 11].2, 1e-5);
@@ -339,7 +339,7 @@ fn a_decay_that_begins_within_a_gap_has_its_time() {
         rig.run(f64::from(before) * TICK_S, &motion);
         let at = |tick: u32| motion(f64::from(tick) * TICK_S);
         for tick in before + 1..after {
-            rig.tick(Sample::Lost, Sight::IDEAL.position(at(tick).0));
+            rig.tick(Sample::Lost, Sensing::IDEAL.position(at(tick).0));
         }
         let (from, to) = (at(before), at(after));
         rig.step(from, to, to.0 - from.0);
@@ -356,7 +356,8 @@ fn a_decay_that_begins_within_a_gap_has_its_time() {
 
 #[test]
 fn a_count_that_flickers_at_the_edge_of_a_tooth_gives_nothing_way() {
-    let sight = Sight::of_encoder(&crepitus_model::control::encoder::EncoderSettings::default());
+    let sensing =
+        Sensing::of_encoder(&crepitus_model::control::encoder::EncoderSettings::default());
     let settings = EffectSettings {
         cogwheel: Some(CogwheelSettings {
             mode: 1,
@@ -365,15 +366,15 @@ fn a_count_that_flickers_at_the_edge_of_a_tooth_gives_nothing_way() {
         ..EffectSettings::default()
     };
     // A tooth of 7.5 deg is high for its first half.
-    let edge = sight.position::<f64>(3.75_f64.to_radians()).count;
-    let mut rig = Rig::<f64>::new(settings, sight, 0.0);
+    let edge = sensing.position::<f64>(3.75_f64.to_radians()).count;
+    let mut rig = Rig::<f64>::new(settings, sensing, 0.0);
     let mut count = 0;
     let mut go = |to: i32| {
         let mut nm = 0.0;
         while count != to {
             let by = (to - count).signum();
             count += by;
-            let travel_rad = f64::from(by) * sight.rad_per_count;
+            let travel_rad = f64::from(by) * sensing.rad_per_count;
             let omega = travel_rad / TICK_S;
             let shaft = crepitus_model::ShaftStep {
                 delta_phi_rad: travel_rad,

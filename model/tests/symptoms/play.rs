@@ -6,7 +6,7 @@ use crepitus_model::render::effects::play::{Hold, Limits, Part, Play};
 use crepitus_model::render::effects::symptom::{Change, Word};
 use crepitus_model::render::input_check::Checked;
 use crepitus_model::render::position::decay;
-use crepitus_model::render::position::{Scale, Sight, Travel};
+use crepitus_model::render::position::{Scale, Sensing, Travel};
 
 /// A tick from one angle to another, rad.
 fn travel(from_rad: f64, to_rad: f64) -> Travel<f64> {
@@ -16,8 +16,8 @@ fn travel(from_rad: f64, to_rad: f64) -> Travel<f64> {
         omega_start_rad_s: omega,
         omega_end_rad_s: omega,
     };
-    let scale = Scale::new(&Sight::IDEAL, TICK_S);
-    let place = Sight::IDEAL.position(to_rad);
+    let scale = Scale::new(&Sensing::IDEAL, TICK_S);
+    let place = Sensing::IDEAL.position(to_rad);
     Travel::of(&Checked::Step(shaft), &place, &scale).unwrap()
 }
 
@@ -35,7 +35,7 @@ fn to(play: &mut Play<f64>, from_rad: f64, to_rad: f64, stiffness: f64) -> f64 {
 
 fn stretched() -> Play<f64> {
     let mut play = Play::new();
-    play.rest(&Sight::IDEAL.position(0.5));
+    play.rest(&Sensing::IDEAL.position(0.5));
     near(to(&mut play, 0.5, 0.51, 100.0), 1.0, 1e-12);
     play
 }
@@ -127,7 +127,7 @@ fn a_short_decay_is_the_exponential() {
 #[test]
 fn a_play_that_gets_a_spring_begins_without_torque() {
     let mut play = Play::new();
-    play.rest(&Sight::IDEAL.position(0.5));
+    play.rest(&Sensing::IDEAL.position(0.5));
     play.change(0.0, 100.0, 1.0);
     near(to(&mut play, 0.5, 0.505, 100.0), 0.5, 1e-12);
 }
@@ -186,7 +186,7 @@ fn a_spring_that_is_dragged_turns_when_the_joint_does() {
                     (rad, -way * slows * since_s)
                 };
                 let mut play = Play::new();
-                play.rest(&Sight::IDEAL.position(motion(0.0).0));
+                play.rest(&Sensing::IDEAL.position(motion(0.0).0));
                 let mut words = Vec::new();
                 for tick in 0..14 {
                     let begins = f64::from(tick);
@@ -196,8 +196,8 @@ fn a_spring_that_is_dragged_turns_when_the_joint_does() {
                         omega_start_rad_s: from.1,
                         omega_end_rad_s: end.1,
                     };
-                    let scale = Scale::new(&Sight::IDEAL, TICK_S);
-                    let place = Sight::IDEAL.position(end.0);
+                    let scale = Scale::new(&Sensing::IDEAL, TICK_S);
+                    let place = Sensing::IDEAL.position(end.0);
                     let travel = Travel::of(&Checked::Step(shaft), &place, &scale).unwrap();
                     let nm = play.follow(
                         &travel,

@@ -7,7 +7,7 @@ use crepitus_model::render::Addition;
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::clonus::ClonusSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
-use crepitus_model::render::position::Sight;
+use crepitus_model::render::position::Sensing;
 use proptest::prelude::*;
 
 /// The tank is full after 0.2 J at 0.04 W.
@@ -64,10 +64,10 @@ proptest! {
     ) {
         let settings = any_symptom(kind, &x);
         let (before, after) = (hand(&before), hand(&after));
-        let mut used = Rig::<f64>::new(settings, Sight::IDEAL, before[0]);
+        let mut used = Rig::<f64>::new(settings, Sensing::IDEAL, before[0]);
         follow(&mut used, &before);
-        let mut new = Rig::<f64>::new(settings, Sight::IDEAL, after[0]);
-        let place = Sight::IDEAL.position(after[0]);
+        let mut new = Rig::<f64>::new(settings, Sensing::IDEAL, after[0]);
+        let place = Sensing::IDEAL.position(after[0]);
         for rig in [&mut used, &mut new] {
             // What has been given stays given: the tank of those that push fills up first.
             let is_active = kind >= KINDS;

@@ -5,18 +5,18 @@ use crepitus_model::render::effects::{
     EffectSettings, EffectSpec, Phases, SwitchedEffects, Timing,
 };
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
-use crepitus_model::render::position::{Position, Sight};
-use crepitus_model::render::{Addition, Check, Limit, Seen, Shown};
+use crepitus_model::render::position::{Position, Sensing};
+use crepitus_model::render::{Addition, Check, Limit, ShaftEstimate, Shown};
 use crepitus_model::{Real, Sample, ShaftStep};
 
 pub(crate) const TICK_S: f64 = 5e-5;
 pub(crate) const SLEW_NM: f64 = 100.0 * TICK_S;
 
-pub(crate) fn timing(sight: Sight) -> Timing {
+pub(crate) fn timing(sensing: Sensing) -> Timing {
     Timing {
         step_s: TICK_S,
         delay_ticks: 2,
-        sight,
+        sensing,
     }
 }
 
@@ -41,8 +41,8 @@ pub(crate) struct Rig<F: Real> {
 }
 
 impl<F: Real> Rig<F> {
-    pub(crate) fn new(settings: EffectSettings, sight: Sight, from_rad: f64) -> Self {
-        let timing = timing(sight);
+    pub(crate) fn new(settings: EffectSettings, sensing: Sensing, from_rad: f64) -> Self {
+        let timing = timing(sensing);
         let mut rig = Self {
             effects: SwitchedEffects::new(F::from_f64(SLEW_NM), &timing),
             check: InputCheck::new(&InputLimits::device(TICK_S), F::from_f64(TICK_S), F::ZERO),
@@ -57,7 +57,7 @@ impl<F: Real> Rig<F> {
             held_back: 0.0,
         };
         rig.commit(settings);
-        rig.effects.rest(&sight.position(from_rad));
+        rig.effects.rest(&sensing.position(from_rad));
         rig
     }
 
@@ -70,7 +70,7 @@ impl<F: Real> Rig<F> {
 
     pub(crate) fn tick(&mut self, sample: Sample<F>, place: Position<F>) -> f64 {
         let input = self.check.check(&sample);
-        let seen = Seen {
+        let seen = ShaftEstimate {
             sample,
             omega_rad_s: F::ZERO,
             place,
@@ -112,7 +112,7 @@ impl<F: Real> Rig<F> {
             omega_start_rad_s: F::from_f64(from.1),
             omega_end_rad_s: F::from_f64(to.1),
         };
-        self.tick(Sample::Taken(shaft), self.timing.sight.position(to.0))
+        self.tick(Sample::Taken(shaft), self.timing.sensing.position(to.0))
     }
 
     /// Along a motion from 0 s on: (s, rad, N·m) at the ticks, and words with their times.
@@ -162,7 +162,7 @@ pub(crate) fn ramp(from_deg: f64, deg_s: f64) -> impl Fn(f64) -> (f64, f64) {
 }
 
 pub(crate) fn only<F: Real>(settings: EffectSettings, from_deg: f64) -> Rig<F> {
-    Rig::new(settings, Sight::IDEAL, from_deg.to_radians())
+    Rig::new(settings, Sensing::IDEAL, from_deg.to_radians())
 }
 
 pub(crate) fn near(found: f64, expected: f64, within: f64) {

@@ -11,7 +11,7 @@ use crepitus_model::render::effects::range_limit::{RangeLimit, RangeLimitSetting
 use crepitus_model::render::effects::spasticity::{Spasticity, SpasticitySettings};
 use crepitus_model::render::effects::texture::{Texture, TextureSettings};
 use crepitus_model::render::effects::{DeviceEffect, EffectSettings};
-use crepitus_model::render::position::Sight;
+use crepitus_model::render::position::Sensing;
 
 /// Each number just outside its range is refused, by the rules of a knee and before a law
 /// is made of it; no number is.
@@ -22,7 +22,7 @@ where
 {
     let defaults = E::Settings::defaults();
     assert_eq!(with(defaults).check(None), Ok(()));
-    assert!(E::coefficients(&defaults, &timing(Sight::IDEAL)).is_ok());
+    assert!(E::coefficients(&defaults, &timing(Sensing::IDEAL)).is_ok());
     for (place, spec) in E::Settings::TABLE.iter().enumerate() {
         let width = spec.max - spec.min;
         for value in [spec.min - 1e-6 * width, spec.max + 1e-6 * width, f64::NAN] {
@@ -33,7 +33,7 @@ where
                 matches!(refused, Err(SettingsError::OutOfRange { .. })),
                 "{key} = {value}: {refused:?}"
             );
-            let refused = E::coefficients(&settings, &timing(Sight::IDEAL)).map(|_| ());
+            let refused = E::coefficients(&settings, &timing(Sensing::IDEAL)).map(|_| ());
             assert!(refused.is_err(), "{key} = {value}");
         }
     }

@@ -10,14 +10,14 @@ use crepitus_model::render::effects::clonus::ClonusSettings;
 use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_model::render::effects::symptom::Word;
-use crepitus_model::render::position::{Position, Sight};
+use crepitus_model::render::position::{Position, Sensing};
 use crepitus_model::{Sample, ShaftStep};
 
-const COUNT_RAD: f64 = Sight::IDEAL.rad_per_count;
+const COUNT_RAD: f64 = Sensing::IDEAL.rad_per_count;
 
 /// Place so many counts from an angle. Differences of such places are exact.
 fn place(deg: f64, counts: i32) -> Position<f64> {
-    let place = Sight::IDEAL.position::<f64>(deg.to_radians());
+    let place = Sensing::IDEAL.position::<f64>(deg.to_radians());
     Position {
         count: place.count + counts,
         ..place
@@ -335,7 +335,7 @@ fn a_joint_that_enters_from_the_wall_itself_is_pushed_from_there() {
 /// A count that flickers at a wall is no contact and no leave each time.
 #[test]
 fn a_wall_is_left_once_the_joint_is_out_of_it_by_more_than_noise() {
-    let sight = Sight::of_encoder(&EncoderSettings::default());
+    let sensing = Sensing::of_encoder(&EncoderSettings::default());
     let wall = EffectSettings {
         range_limit: Some(RangeLimitSettings {
             flexion_limit_deg: 60.0,
@@ -344,11 +344,11 @@ fn a_wall_is_left_once_the_joint_is_out_of_it_by_more_than_noise() {
         ..EffectSettings::default()
     };
     let limit_rad = 60_f64.to_radians();
-    let at_wall = (limit_rad / sight.rad_per_count).ceil() as i32;
+    let at_wall = (limit_rad / sensing.rad_per_count).ceil() as i32;
     let mut count = at_wall - 10;
-    let mut rig = Rig::<f64>::new(wall, sight, f64::from(count) * sight.rad_per_count);
+    let mut rig = Rig::<f64>::new(wall, sensing, f64::from(count) * sensing.rad_per_count);
     let mut to = |next: i32| {
-        let omega = f64::from(next - count) * sight.rad_per_count / TICK_S;
+        let omega = f64::from(next - count) * sensing.rad_per_count / TICK_S;
         let shaft = ShaftStep {
             delta_phi_rad: omega * TICK_S,
             omega_start_rad_s: omega,
@@ -364,7 +364,7 @@ fn a_wall_is_left_once_the_joint_is_out_of_it_by_more_than_noise() {
         assert_eq!(to(next), (vec![], None));
     }
     assert_eq!(to(at_wall), (vec![Word::Contact], Some("in-the-wall")));
-    let noise = (sight.flicker_rad / sight.rad_per_count) as i32;
+    let noise = (sensing.flicker_rad / sensing.rad_per_count) as i32;
     assert!(noise > 0);
     for _ in 0..3 {
         for next in [at_wall, at_wall - noise] {

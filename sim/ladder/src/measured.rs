@@ -8,7 +8,7 @@ use crepitus_model::control::encoder::EncoderReader;
 use crepitus_model::render::effects::{DeviceEffect, Tick};
 use crepitus_model::render::input_check::Checked;
 use crepitus_model::render::position::{Position, Scale, Travel};
-use crepitus_model::render::{Seen, Shown};
+use crepitus_model::render::{ShaftEstimate, Shown};
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
     CurrentLoop, Event, EventKind, Guarded, Renderer, Sample, ShaftStep, StepCoefficients,
@@ -184,7 +184,7 @@ impl<E: DeviceEffect<f32>> Measured for Effect<E> {
         };
         let input = Checked::Step(shaft);
         let travel = Travel::plausible(&input, &self.place, &self.scale);
-        let seen = Seen::taken(&shaft, self.place);
+        let seen = ShaftEstimate::taken(&shaft, self.place);
         let tick = Tick::of(&seen, &input, travel.as_ref(), 1.0);
         let added_nm = self.law.added(&tick, &mut shown, &mut ());
         [added_nm.to_bits(), 0, 0]

@@ -14,7 +14,7 @@ use crepitus_model::real::Real;
 use crepitus_model::render::effects::{DeviceEffect, LawVisitor, SPECS, Timing};
 use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::render::position::Scale;
-use crepitus_model::render::position::Sight;
+use crepitus_model::render::position::Sensing;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{CurrentLoop, Guarded, Renderer, SettingsError, StepCoefficients, StickSlip};
 
@@ -85,7 +85,7 @@ impl Here<'_> {
                 let timing = Timing {
                     step_s,
                     delay_ticks: MOST_DELAY_TICKS,
-                    sight: Sight::of_encoder(&EncoderSettings::default()),
+                    sensing: Sensing::of_encoder(&EncoderSettings::default()),
                 };
                 // There is a subject for each place of the table only.
                 let settings = SPECS

@@ -6,7 +6,7 @@
 
 mod promise_runs;
 
-use promise_runs::{Found, WAYS, Way, near, of, shipped, shipped_with};
+use promise_runs::{PromiseRun, WAYS, Way, near, of, shipped, shipped_with};
 use std::f64::consts::TAU;
 
 /// A spring's torque of one count is what it may be off behind counts, N·m.
@@ -269,7 +269,7 @@ fn the_higher_the_grade_the_shorter_the_first_swing() {
 }
 
 /// The swings of a released leg, deg, and its highest speed, deg/s.
-fn swings(found: &Found) -> (Vec<f64>, f64) {
+fn swings(found: &PromiseRun) -> (Vec<f64>, f64) {
     let angles = found.column("angle_rad");
     let mut turns = vec![angles[0]];
     for three in angles.windows(3) {

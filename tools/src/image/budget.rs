@@ -254,7 +254,7 @@ impl Budget {
         if !(0.0..=100.0).contains(&budget.tolerance_percent) {
             return Err(error("tolerance_percent is not in 0..=100".to_owned()));
         }
-        check_entries(budget.loops.iter().map(BoundedLoops::vouched)).map_err(error)?;
+        check_entries(budget.loops.iter().map(BoundedLoops::allowances)).map_err(error)?;
         check_bounds(&budget.loops).map_err(error)?;
         for (name, image) in &budget.images {
             if let Some(reserved) = image.reserved.iter().find(|r| r.from >= r.to) {
@@ -290,15 +290,15 @@ impl BoundedLoops {
         self.at_most.or(listed.copied())
     }
 
-    fn vouched(&self) -> (&'static str, &str, &str) {
+    fn allowances(&self) -> (&'static str, &str, &str) {
         ("loops", &self.function, &self.reason)
     }
 }
 
 impl ImageBudget {
     /// All allowances: the kind, the function or library, the reason.
-    pub fn vouched(&self) -> impl Iterator<Item = (&'static str, &str, &str)> {
-        let loops = self.loops.iter().map(BoundedLoops::vouched);
+    pub fn allowances(&self) -> impl Iterator<Item = (&'static str, &str, &str)> {
+        let loops = self.loops.iter().map(BoundedLoops::allowances);
         let panics = self.panics.iter();
         let panics = panics.map(|e| ("panics", e.library.as_str(), e.reason.as_str()));
         let ends = self.ends.iter();
@@ -312,8 +312,8 @@ impl ImageBudget {
 
     /// One entry a function, each with a reason; the loops of all images count.
     fn check(&self, shared: &[BoundedLoops]) -> Result<(), String> {
-        let shared = shared.iter().map(BoundedLoops::vouched);
-        check_entries(shared.chain(self.vouched()))?;
+        let shared = shared.iter().map(BoundedLoops::allowances);
+        check_entries(shared.chain(self.allowances()))?;
         if let Some(entry) = self.panics.iter().find(|entry| entry.at_most == 0) {
             let library = &entry.library;
             return Err(format!(

@@ -1,15 +1,15 @@
 //! The gate: an image against its budget.
 
+mod allowances;
 mod bounds;
 mod code;
-mod found;
+mod findings;
 mod layout;
 mod loops;
 mod panics;
 mod shared;
 mod sizes;
 mod stacks;
-mod vouched;
 
 use crate::image::budget::{BoundedLoops, ImageBudget};
 use crate::image::elf::Image;
@@ -19,11 +19,11 @@ use crate::image::memory::Region;
 use crate::image::program::{Function, Program};
 use crate::image::report::{Finding, Report};
 use crate::image::vectors::Vectors;
+use allowances::Allowances;
 use std::collections::BTreeSet;
-use vouched::Vouched;
 
+pub(crate) use allowances::unknown_calls;
 pub use shared::needless_loops;
-pub(crate) use vouched::unknown_calls;
 
 /// An analysed image, with its budget.
 pub struct Gate<'a> {
@@ -35,7 +35,7 @@ pub struct Gate<'a> {
     memory: &'a [Region],
     budget: &'a ImageBudget,
     tolerance_percent: f64,
-    vouched: Vouched<'a>,
+    allowances: Allowances<'a>,
 }
 
 /// Input of [`examine`].
@@ -72,7 +72,7 @@ pub fn examine(name: &str, subject: Subject<'_>) -> Result<Report, ImageError> {
         memory: subject.memory,
         budget: subject.budget,
         tolerance_percent: subject.tolerance_percent,
-        vouched: Vouched::new(&program, subject.budget, subject.shared_loops),
+        allowances: Allowances::new(&program, subject.budget, subject.shared_loops),
     };
     let mut report = Report {
         image: name.to_owned(),

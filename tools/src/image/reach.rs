@@ -12,12 +12,12 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// Walks from `root`. `vouched` adds callees unknown from the code; calls
+    /// Walks from `root`. `allowances` adds callees unknown from the code; calls
     /// of functions in `ends` are not followed.
     pub fn new(
         program: &Program,
         root: u32,
-        vouched: &dyn Fn(&Function) -> Vec<u32>,
+        allowances: &dyn Fn(&Function) -> Vec<u32>,
         ends: &dyn Fn(&Function) -> bool,
     ) -> Self {
         let mut from = BTreeMap::from([(root, None)]);
@@ -31,7 +31,7 @@ impl Reach {
             }
             let calls = program.calls(function).into_iter();
             let known = calls.filter_map(|(site, callee)| Some((site, callee?)));
-            let more = vouched(function)
+            let more = allowances(function)
                 .into_iter()
                 .map(|callee| (address, callee));
             for (site, callee) in known.chain(more) {
@@ -74,7 +74,7 @@ impl Reach {
     pub fn recursion(
         &self,
         program: &Program,
-        vouched: &dyn Fn(&Function) -> Vec<u32>,
+        allowances: &dyn Fn(&Function) -> Vec<u32>,
     ) -> Vec<Vec<u32>> {
         let all: Vec<u32> = self.functions().collect();
         let index = |address: u32| all.binary_search(&address).ok();
@@ -86,8 +86,10 @@ impl Reach {
                 .calls(function)
                 .into_iter()
                 .filter_map(|(_, callee)| callee);
-            let callees: BTreeSet<usize> =
-                known.chain(vouched(function)).filter_map(index).collect();
+            let callees: BTreeSet<usize> = known
+                .chain(allowances(function))
+                .filter_map(index)
+                .collect();
             callees.into_iter().collect()
         };
         let next: Vec<Vec<usize>> = all.iter().map(callees).collect();

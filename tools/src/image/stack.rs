@@ -161,9 +161,9 @@ impl<'a> Depths<'a> {
         let extra = (self.extra)(function);
         let more = extra.dynamic.unwrap_or(0);
         let mut worst = (frame.deepest, None);
-        let vouched = extra.targets.unwrap_or_default();
-        let vouched = vouched.into_iter().map(|target| (frame.deepest, target));
-        for (depth, callee) in frame.calls.iter().copied().chain(vouched) {
+        let allowances = extra.targets.unwrap_or_default();
+        let allowances = allowances.into_iter().map(|target| (frame.deepest, target));
+        for (depth, callee) in frame.calls.iter().copied().chain(allowances) {
             let bytes = depth.saturating_add(self.walk(callee));
             if bytes > worst.0 {
                 worst = (bytes, Some((depth, callee)));

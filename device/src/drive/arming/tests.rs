@@ -9,7 +9,7 @@ fn arm(raw_a: f32, stuck: Option<bool>, counts: i32, hand: i32) -> (ArmingOutput
     let (mut line, mut count, mut ticks) = (stuck.unwrap_or(false), i32::MAX - 20, 0);
     let mut speed = 0;
     loop {
-        let wish = arming.tick(&Seen {
+        let wish = arming.tick(&ArmingInputs {
             raw_a: Some((raw_a, raw_a)),
             line_is_on: stuck.unwrap_or(line),
             comms_line_is_on: arming.awaits_comms(),
@@ -64,7 +64,7 @@ fn a_hand_that_speeds_up_changes_nothing() {
             let (wish, is_proven) = (0_i32..1_000)
                 .find_map(|tick| {
                     let hand = per_mille * tick * tick / 2_000;
-                    let wish = arming.tick(&Seen {
+                    let wish = arming.tick(&ArmingInputs {
                         raw_a: Some((0.0, 0.0)),
                         line_is_on: line,
                         comms_line_is_on: arming.awaits_comms(),
@@ -101,7 +101,7 @@ fn arming_fails_on_a_defect() {
     ] {
         assert_eq!(arm(raw_a, stuck, 1, 0).0, ArmingOutput::Failed(fault));
     }
-    let nothing = Seen {
+    let nothing = ArmingInputs {
         raw_a: None,
         line_is_on: false,
         comms_line_is_on: false,
@@ -129,7 +129,7 @@ fn leaks_by(passes: impl Fn(f32, bool) -> f32, on: Option<bool>) -> ArmingOutput
     (0..5_000)
         .find_map(|_| {
             let comms_line_is_on = on.unwrap_or(arming.awaits_comms());
-            let wish = arming.tick(&Seen {
+            let wish = arming.tick(&ArmingInputs {
                 raw_a: Some((raw_a, -raw_a)),
                 line_is_on: line,
                 comms_line_is_on,
@@ -178,7 +178,7 @@ fn a_push_that_must_not_move_current_proves_nothing_while_its_line_is_not_as_it_
         let (mut line, mut ticks) = (false, 0);
         (0..5_000).find_map(|_| {
             let is_wrong = ticks == wrong_tick && ticks > 0;
-            let wish = arming.tick(&Seen {
+            let wish = arming.tick(&ArmingInputs {
                 raw_a: Some((0.0, 0.0)),
                 line_is_on: line != is_wrong,
                 comms_line_is_on: arming.awaits_comms(),
@@ -210,7 +210,7 @@ fn a_line_that_does_not_fall_again_is_stuck() {
     let mut arming = Arming::default();
     let wish = (0..200)
         .map(|n| {
-            arming.tick(&Seen {
+            arming.tick(&ArmingInputs {
                 raw_a: Some((0.0, 0.0)),
                 line_is_on: n >= 65,
                 comms_line_is_on: false,
@@ -228,7 +228,7 @@ fn off(off_a: (f32, f32), leak_a: (f32, f32)) -> (ArmingOutput, Option<(f32, f32
     let (mut line, mut leaks) = (false, false);
     loop {
         let share = if leaks { 1.0 } else { 0.0 };
-        let wish = arming.tick(&Seen {
+        let wish = arming.tick(&ArmingInputs {
             raw_a: Some((off_a.0 + share * leak_a.0, off_a.1 + share * leak_a.1)),
             line_is_on: line,
             comms_line_is_on: arming.awaits_comms(),
@@ -269,7 +269,7 @@ fn a_line_of_comms_that_falls_within_its_push_ends_the_arming() {
     let mut arming = Arming::default();
     let (mut line, mut pushes) = (false, 0);
     let wish = (0..5_000).find_map(|_| {
-        let wish = arming.tick(&Seen {
+        let wish = arming.tick(&ArmingInputs {
             raw_a: Some((0.0, 0.0)),
             line_is_on: line,
             comms_line_is_on: arming.awaits_comms() && pushes < 30,

@@ -109,7 +109,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     interrupt::listen();
     let rows = written(&recording, &out, new.as_file(), writer)?;
     new.persist()?;
-    let totals = recording.books().totals;
+    let totals = recording.accounting().totals;
     if as_json {
         return print_json(
             &json!({ "out": json_path(&out), "rows": rows, "telemetry": totals, "warnings": warnings }),

@@ -18,7 +18,9 @@ use crepitus_files::output::{Folder, Inputs};
 use crepitus_pages::recorded::{Analysis, RecordingSummary, ReportColumns};
 use crepitus_pages::report::{Collector, Mark, Setup, Text, TorqueLevels};
 use crepitus_protocol::TICK_S;
-use crepitus_recording::{ArmingPushes, Books, Damage, History, Recording, Row, Step, seconds};
+use crepitus_recording::{
+    ArmingPushes, Damage, History, Recording, Row, SampleAccounting, Step, seconds,
+};
 use std::path::{Path, PathBuf};
 
 /// Rows between two updates of the progress.
@@ -129,7 +131,7 @@ pub(super) fn write_into(
     let mut listener = extras
         .wav
         .listener(&columns, TICK_S, extras.force, inputs)?;
-    let expected = recording.books().totals.received;
+    let expected = recording.accounting().totals.received;
     let setup = Setup {
         columns: &columns,
         rows_expected: expected,
@@ -156,7 +158,12 @@ pub(super) fn write_into(
             }
             changed_at_s.push(row.time_s);
         }
-        note_step(&mut collector, before.as_ref(), &row, recording.books());
+        note_step(
+            &mut collector,
+            before.as_ref(),
+            &row,
+            recording.accounting(),
+        );
         before = Some(row);
         let derived = analysis.row(&row);
         report_columns.read(&row, &derived, analysis.values(), &mut values);
@@ -178,7 +185,7 @@ pub(super) fn write_into(
             }
         }
     }
-    let missing_s = seconds(recording.books().missing_at_end);
+    let missing_s = seconds(recording.accounting().missing_at_end);
     if missing_s > 0.0 {
         let last_s = before.map_or(0.0, |row| row.time_s);
         collector.gap(last_s, last_s + missing_s);
@@ -188,7 +195,7 @@ pub(super) fn write_into(
         title: recording.metadata().title.clone(),
         description: Some(tables::first_sentences(&summary)),
         warnings: summary.warnings.clone(),
-        sections: tables::sections(&summary, recording.books(), &changed_at_s),
+        sections: tables::sections(&summary, recording.accounting(), &changed_at_s),
         footer: footer(),
     };
     let figures = collector.finish();
@@ -211,7 +218,7 @@ pub(super) fn write_into(
 }
 
 /// Tells the figures what lies before a row: missing samples, or a restart of the drive.
-fn note_step(collector: &mut Collector, before: Option<&Row>, row: &Row, books: &Books) {
+fn note_step(collector: &mut Collector, before: Option<&Row>, row: &Row, books: &SampleAccounting) {
     let Some(before) = before else {
         let from_s = first_time_s(row, books);
         if row.time_s - from_s > 0.5 * TICK_S {
@@ -233,7 +240,7 @@ fn note_step(collector: &mut Collector, before: Option<&Row>, row: &Row, books: 
 }
 
 /// Start of the accounting, s: before the first row, if samples are missing there.
-fn first_time_s(first: &Row, books: &Books) -> f64 {
+fn first_time_s(first: &Row, books: &SampleAccounting) -> f64 {
     let gaps = books.gaps.iter().take_while(|gap| gap.row == 0);
     let missing = gaps.map(|gap| gap.samples).sum();
     (first.time_s - seconds(missing)).min(0.0)
@@ -482,11 +489,11 @@ mod tests {
             samples,
             cause: crepitus_recording::Cause::OnTheWay,
         };
-        let books = Books {
+        let books = SampleAccounting {
             gaps: vec![gap(0, 1_000), gap(0, 3_000), gap(20, 500)],
-            ..Books::default()
+            ..SampleAccounting::default()
         };
-        let first_s = |time_s: f64, books: &Books| {
+        let first_s = |time_s: f64, books: &SampleAccounting| {
             let row = Row {
                 time_s,
                 ..Row::default()
@@ -496,8 +503,8 @@ mod tests {
         assert!((first_s(0.0, &books) + 0.2).abs() < 1e-12);
         // Of a file whose first rows are lost.
         assert_eq!(first_s(0.2, &books), 0.0);
-        assert_eq!(first_s(2.0, &Books::default()), 0.0);
-        assert_eq!(first_s(0.0, &Books::default()), 0.0);
+        assert_eq!(first_s(2.0, &SampleAccounting::default()), 0.0);
+        assert_eq!(first_s(0.0, &SampleAccounting::default()), 0.0);
     }
 
     #[test]

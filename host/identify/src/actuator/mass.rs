@@ -141,7 +141,7 @@ fn is_as_cold(fit: &Fit, with: &Fit) -> Result<(), Refusal> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::actuator::examined::Examined;
+    use crate::actuator::explained_chirp::ExplainedChirp;
     use crate::actuator::synthetic::{NOISE, NOMINAL, band, played};
 
     #[test]
@@ -154,7 +154,7 @@ mod tests {
                 ..NOMINAL
             };
             let series = played(&z, 500.0, 5, NOISE);
-            Examined::of(&series, band(500.0), None).unwrap().fit
+            ExplainedChirp::of(&series, band(500.0), None).unwrap().fit
         };
         let added = Weighed {
             mass_kg: 0.03,

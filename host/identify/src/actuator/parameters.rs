@@ -2,7 +2,7 @@
 
 use crate::actuator::bands::Mean;
 use crate::actuator::derived::derived;
-use crate::actuator::examined::Examined;
+use crate::actuator::explained_chirp::ExplainedChirp;
 use crate::actuator::fit::Fit;
 use crate::actuator::impedance::Impedance;
 use crate::actuator::mass::{Split, Weighed, agreed, by_added_mass, by_weight};
@@ -43,7 +43,7 @@ impl MassEvidence<'_> {
     fn split(&self, fit: &Fit, band: Band) -> Result<Split, Refusal> {
         let known_kg = self.known_kg();
         let with_added = |with: &Series, added: Weighed| {
-            let with = Examined::of(with, band, known_kg.map(|kg| kg + added.mass_kg))?;
+            let with = ExplainedChirp::of(with, band, known_kg.map(|kg| kg + added.mass_kg))?;
             by_added_mass(fit, &with.fit, added)
         };
         match *self {
@@ -131,7 +131,7 @@ pub fn identify(
     band: Band,
     evidence: &MassEvidence<'_>,
 ) -> Result<Actuator, Refusal> {
-    let examined = Examined::of(series, band, evidence.known_kg())?;
+    let examined = ExplainedChirp::of(series, band, evidence.known_kg())?;
     let fit = &examined.fit;
     let split = evidence.split(fit, band)?;
     let actuator = Actuator {

@@ -68,7 +68,7 @@ pub enum Refusal {
 
 /// Values identified from the hanging weight, with 95 % confidence intervals.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found {
+pub struct HangingFit {
     /// Torque at the joint per ampere, without losses, N·m/A.
     pub nm_per_a: Estimate,
     /// Share of the motor's torque that the gear loses.
@@ -110,7 +110,7 @@ pub fn found(
     moment_nm: Estimate,
     hangs_rad: f64,
     nm_per_a: f64,
-) -> Result<Found, Refusal> {
+) -> Result<HangingFit, Refusal> {
     let count = |sense: f64| means.iter().filter(|m| m.sense * sense > 0.0).count();
     let away = means.first().map_or(1.0, |mean| mean.sense);
     let (up, down) = (count(away), count(-away));
@@ -182,7 +182,7 @@ pub fn found(
     let together = |parts: [f64; 3]| parts.iter().map(|part| part * part).sum::<f64>().sqrt();
     let by_weight = moment_nm.share();
     let (scale, friction) = (numbers[0] * moment, numbers[2] * moment);
-    Ok(Found {
+    Ok(HangingFit {
         nm_per_a: Estimate {
             value: scale,
             half_width: together([half(0) * moment, scale * by_weight, scale * MODEL[0]]),

@@ -51,7 +51,7 @@ impl<'r> Analysis<'r> {
             in_force: recording.parameters().in_force(),
             values: None,
             rows: 0,
-            recount: Recount::new(recording.books()),
+            recount: Recount::new(recording.accounting()),
             nm_per_a: f64::NAN,
             object: ObjectTracker::default(),
             tally: Tally::default(),

@@ -6,7 +6,7 @@ use crate::plot::{
 };
 use crate::report::symptom_chart::{WIDE, WIDTH};
 use crate::report::symptoms::Symptom;
-use crate::report::symptoms::found::Beat;
+use crate::report::symptoms::occurrences::Beat;
 use crepitus_model::render::effects::clonus::ClonusSettings;
 
 const HEIGHT: f64 = 190.0;

@@ -11,7 +11,7 @@ use crate::report::balance::Balance;
 use crate::report::channels::{Channels, Sample, Setup, TorqueLevels};
 use crate::report::choice::Choice;
 use crate::report::envelope::Envelope;
-use crate::report::fast_part::{FastPart, Seen};
+use crate::report::fast_part::{FastPart, Waiting};
 use crate::report::hysteresis::Hysteresis;
 use crate::report::overlay::{self, Comparison, Difference, Measured};
 use crate::report::plant::{Plant, PlantCollector};
@@ -290,8 +290,8 @@ impl Collector {
     fn complete_due_windows(&mut self) {
         while let Some(seen) = self.fast.as_mut().and_then(FastPart::next) {
             match seen {
-                Seen::Row(sample) => self.take_row(&sample),
-                Seen::Event(event) => self.take_event(&event),
+                Waiting::Row(sample) => self.take_row(&sample),
+                Waiting::Event(event) => self.take_event(&event),
             }
         }
     }

@@ -26,7 +26,7 @@ use crate::report::channels::Sample;
 
 /// A row or an event on its way.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Seen {
+pub(crate) enum Waiting {
     /// Row with its fast part.
     Row(Sample),
     Event(EventRecord),
@@ -38,7 +38,7 @@ pub(crate) struct FastPart {
     row_step_s: f64,
     /// Rows in T/2.
     half: usize,
-    waiting: VecDeque<Seen>,
+    waiting: VecDeque<Waiting>,
     /// Sums of all hand torques before a row: of those rows that a mean may
     /// still begin or end at.
     sums: VecDeque<f64>,
@@ -88,12 +88,12 @@ impl FastPart {
         let sum = self.sums.back().map_or(0.0, |sum| sum + self.last);
         self.sums.push_back(sum);
         self.rows_in += 1;
-        self.waiting.push_back(Seen::Row(sample));
+        self.waiting.push_back(Waiting::Row(sample));
     }
 
     /// Takes an event.
     pub(crate) fn event(&mut self, event: EventRecord) {
-        self.waiting.push_back(Seen::Event(event));
+        self.waiting.push_back(Waiting::Event(event));
     }
 
     /// No more rows will come: the rest is due.
@@ -102,16 +102,16 @@ impl FastPart {
     }
 
     /// The next row or event, if it is due.
-    pub(crate) fn next(&mut self) -> Option<Seen> {
+    pub(crate) fn next(&mut self) -> Option<Waiting> {
         let ahead = self.rows_in - self.rows_out;
-        if let Some(Seen::Row(_)) = self.waiting.front()
+        if let Some(Waiting::Row(_)) = self.waiting.front()
             && !self.ended
             && ahead <= 2 * self.half
         {
             return None;
         }
         let mut seen = self.waiting.pop_front()?;
-        if let Seen::Row(sample) = &mut seen {
+        if let Waiting::Row(sample) = &mut seen {
             // Nearer to an end the means would be one-sided.
             if self.rows_out >= 2 * self.half && ahead > 2 * self.half {
                 let slow = (4.0 * self.mean(self.half) - self.mean(2 * self.half)) / 3.0;
@@ -167,7 +167,7 @@ mod tests {
         let mut part = FastPart::new(STEP).expect("close rows");
         let mut out = Vec::new();
         let mut take = |part: &mut FastPart| {
-            while let Some(Seen::Row(sample)) = part.next() {
+            while let Some(Waiting::Row(sample)) = part.next() {
                 out.push((sample.time, sample.hand_fast));
             }
         };
@@ -237,7 +237,7 @@ mod tests {
         assert!(part.next().is_none(), "too early");
         part.end();
         let order: Vec<bool> = std::iter::from_fn(|| part.next())
-            .map(|seen| matches!(seen, Seen::Event(_)))
+            .map(|seen| matches!(seen, Waiting::Event(_)))
             .collect();
         assert_eq!(order, [false, true, false]);
     }

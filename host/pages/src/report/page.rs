@@ -9,14 +9,14 @@ use crate::report::overlay;
 use crate::report::text::Text;
 use crate::report::{
     chart_energy, chart_hand, chart_motion, chart_orbit, chart_plant, chart_spectrum,
-    chart_symptoms, chart_torque, chart_zoom, examined,
+    chart_symptoms, chart_torque, chart_zoom, examiner_notes,
 };
 
 /// The report as one HTML page, complete in itself.
 pub fn html(text: &Text, figures: &Figures) -> String {
     let balance = figures.balance.as_ref().and_then(balance_table::table);
     let mut sections = overlay::sections(&figures.comparisons);
-    sections.extend(examined::sections(figures));
+    sections.extend(examiner_notes::sections(figures));
     sections.extend(text.sections.iter().cloned());
     let warned = if text.warnings.len() == 1 {
         "Warning"

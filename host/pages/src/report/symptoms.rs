@@ -5,10 +5,10 @@
 //! of a device has the torque of all together and the phase of each: its events are
 //! where one phase follows another.
 
-pub(crate) mod found;
 pub(crate) mod limits;
 pub(crate) mod loops;
 pub(crate) mod movement;
+pub(crate) mod occurrences;
 pub(crate) mod path;
 pub(crate) mod timeline;
 pub(crate) mod words;
@@ -19,7 +19,7 @@ pub(crate) mod tests;
 use crate::report::channels::{Sample, Setup};
 use crepitus_model::render::effects::{EffectSettings, FELT_SHARE};
 use crepitus_scene::trace::{Column, SymptomEvent, Word};
-use found::Found;
+use occurrences::Occurrences;
 use path::Path;
 use timeline::Timeline;
 use words::Words;
@@ -39,7 +39,7 @@ pub(crate) struct Symptom {
     places: Places,
     pub(crate) path: Path,
     pub(crate) timeline: Timeline,
-    pub(crate) found: Found,
+    pub(crate) found: Occurrences,
     state: Option<u16>,
     last_nm: f64,
 }
@@ -69,7 +69,7 @@ impl Symptom {
             places,
             path: Path::new(),
             timeline: Timeline::new(),
-            found: Found::new(places.torque.is_some(), FELT_SHARE * beat_nm),
+            found: Occurrences::new(places.torque.is_some(), FELT_SHARE * beat_nm),
             state: None,
             last_nm: 0.0,
         }

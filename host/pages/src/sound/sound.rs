@@ -54,7 +54,7 @@ pub enum SoundError {
 pub struct Sound {
     step_s: f64,
     resampler: Resampler,
-    kept: Kept,
+    kept: SampleFile,
     first_s: Option<f64>,
     rows: u64,
     missing: u64,
@@ -63,14 +63,14 @@ pub struct Sound {
 
 /// High-passed samples so far, in a temporary file.
 #[derive(Debug)]
-struct Kept {
+struct SampleFile {
     high_pass: HighPass,
     file: BufWriter<File>,
     samples: u64,
     peak_nm: f64,
 }
 
-impl Kept {
+impl SampleFile {
     fn take(&mut self, value: f64) -> Result<(), SoundError> {
         let value = self.high_pass.next(value);
         self.peak_nm = self.peak_nm.max(value.abs());
@@ -130,7 +130,7 @@ impl Sound {
         Ok(Self {
             step_s,
             resampler: Resampler::new(1.0 / step_s, rate_hz),
-            kept: Kept {
+            kept: SampleFile {
                 high_pass: HighPass::new(rate_hz),
                 file: BufWriter::new(tempfile::tempfile()?),
                 samples: 0,

@@ -76,7 +76,7 @@ impl Opened {
     /// Facts about the recording.
     pub(crate) fn facts(&self) -> Value {
         let metadata = self.recording.metadata();
-        let totals = &self.recording.books().totals;
+        let totals = &self.recording.accounting().totals;
         let parameters: Vec<_> = self.differing();
         json!({
             "title": metadata.title,

@@ -1,6 +1,6 @@
 //! Frames of the file.
 
-use crate::books::{Begin, Totals};
+use crate::accounting::{Begin, Totals};
 
 use crate::ending::Ending;
 use crate::metadata::Metadata;

@@ -2,7 +2,7 @@
 
 use super::frame::{Checkpoint, Content, Entry, Owner};
 use super::{FRAME_LIMIT, MAGIC, repair};
-use crate::books::{Begin, Ledger, Totals};
+use crate::accounting::{Begin, Ledger, Totals};
 use crate::damage::Damage;
 use crate::ending::Ending;
 use crate::findings::Findings;
@@ -121,7 +121,7 @@ fn read_all(mut file: &File, mut said: Option<Totals>) -> io::Result<Scanned> {
     file.seek(SeekFrom::Start(0))?;
     let mut reader = LogReader::new(BufReader::with_capacity(1 << 16, file))?;
     while let Some(block) = reader.next()? {
-        let produced = reader.ledger.books().totals.produced;
+        let produced = reader.ledger.accounting().totals.produced;
         if let Some(said) = said.take_if(|said| said.produced <= produced) {
             // This block may have come after it: where those before it are missing.
             let since = (produced - said.produced).min(block.samples.len() as u64);
@@ -293,7 +293,7 @@ impl<R: BufRead> LogReader<R> {
     }
 
     fn block(&mut self, block: Box<Block>) -> Option<Box<Block>> {
-        let row = self.ledger.books().totals.received;
+        let row = self.ledger.accounting().totals.received;
         if !self.ledger.block(&block) {
             self.repeat(block.first_tick);
             return None;
@@ -363,7 +363,7 @@ impl<R: BufRead> LogReader<R> {
         }
         self.history.0.push(ParameterSet {
             revision,
-            first_row: self.ledger.books().totals.received,
+            first_row: self.ledger.accounting().totals.received,
             first_tick: self.ledger.next_tick(),
             values,
         });
@@ -404,7 +404,7 @@ impl<R: BufRead> LogReader<R> {
             self.ending = Some(ending.clone());
         }
         if checkpoint.is_end && self.findings.is_empty() {
-            let totals = self.ledger.books().totals;
+            let totals = self.ledger.accounting().totals;
             if totals != checkpoint.totals {
                 self.findings.add(format!(
                     "Its samples were counted as {}, but its end says {}",
@@ -478,7 +478,7 @@ mod tests {
         assert!(scanned.sorted.is_none());
         let scanned = scan(&file, Damage::Salvage).expect("read");
         assert!(scanned.sorted.is_some());
-        assert_eq!(scanned.ledger.books().totals.received, 40);
+        assert_eq!(scanned.ledger.accounting().totals.received, 40);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::disk::{Background, Disk};
 use super::frame::{Checkpoint, Entry, of_block};
 use super::{CHECKPOINT_BLOCKS, MAGIC};
-use crate::books::{Begin, Ledger, Totals};
+use crate::accounting::{Begin, Ledger, Totals};
 use crate::ending::{EndCause, Ending};
 use crate::metadata::Metadata;
 use crate::parameters::named_values;
@@ -201,7 +201,7 @@ impl<D: Disk> Recorder<D> {
 
     /// Sums so far.
     pub fn totals(&self) -> Totals {
-        self.ledger.books().totals
+        self.ledger.accounting().totals
     }
 
     /// The tick after the last sample.

@@ -2,7 +2,7 @@
 
 use super::seal::{self, Seal};
 use super::{About, KEY, NO_SUM, columns, other, value};
-use crate::books::{Books, Recount, RowCount};
+use crate::accounting::{Recount, RowCount, SampleAccounting};
 use crate::findings::Findings;
 use crate::metadata::Metadata;
 use crate::row::Row;
@@ -125,7 +125,7 @@ impl Reader {
     }
 
     /// Books of its rows, which have none.
-    fn counted(&self) -> io::Result<Books> {
+    fn counted(&self) -> io::Result<SampleAccounting> {
         let mut count = RowCount::default();
         let mut next_row = 0;
         for seal in &self.seals {

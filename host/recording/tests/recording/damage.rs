@@ -27,7 +27,7 @@ impl Bench {
         Self {
             whole: fs::read(&path).unwrap(),
             all: rows_of(&sent),
-            produced: open(&path).unwrap().books().totals.produced,
+            produced: open(&path).unwrap().accounting().totals.produced,
             folder,
         }
     }
@@ -55,7 +55,7 @@ impl Bench {
     /// not known.
     fn check_in_order(&self, bytes: &[u8], rows_least: usize) -> String {
         let said = self.check(bytes, rows_least);
-        let produced = salvaged(&self.path()).books().totals.produced;
+        let produced = salvaged(&self.path()).accounting().totals.produced;
         assert!(produced <= self.produced, "{produced} samples: {said}");
         said
     }
@@ -65,7 +65,7 @@ impl Bench {
         let said = self.check_in_order(bytes, self.all.len());
         let whole = open(&self.folder.path().join("whole")).unwrap();
         let salvaged = salvaged(&self.path());
-        assert_eq!(salvaged.books(), whole.books(), "{said}");
+        assert_eq!(salvaged.accounting(), whole.accounting(), "{said}");
         assert_eq!(salvaged.parameters(), whole.parameters(), "{said}");
         said
     }
@@ -208,7 +208,7 @@ fn samples_that_are_damaged_where_others_are_out_of_order_were_not_lost_on_the_w
         let (a, b, c) = (100_000, 104_096, 108_192);
         let swapped = [&w[..a], &w[b..c], &w[a..b], &w[c..end]].concat();
         bench.check(&swapped, rows - 10 * 20);
-        let totals = salvaged(&bench.path()).books().totals;
+        let totals = salvaged(&bench.path()).accounting().totals;
         assert!(totals.damaged > 0);
         assert_eq!(totals.received + totals.damaged, rows as u64);
         assert_eq!((totals.by_device, totals.on_the_way()), (60, 20));
@@ -313,7 +313,7 @@ fn samples_whose_frame_is_missing_are_damaged_in_the_file() {
     let w = &bench.whole;
     let said = bench.check(&[&w[..from], &w[to..]].concat(), bench.all.len() - 60);
     assert!(said.contains("is not what was written"), "{said}");
-    let totals = salvaged(&bench.path()).books().totals;
+    let totals = salvaged(&bench.path()).accounting().totals;
     assert_eq!((totals.damaged, totals.on_the_way()), (60, 20));
 }
 

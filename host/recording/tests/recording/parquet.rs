@@ -73,7 +73,7 @@ fn the_file_holds_all_that_the_log_held() {
     let parquet = open(&bench.folder.path().join("parquet")).unwrap();
     assert_eq!(parquet.format(), Format::Parquet);
     assert_eq!(parquet.metadata(), log.metadata());
-    assert_eq!(parquet.books(), log.books());
+    assert_eq!(parquet.accounting(), log.accounting());
     assert_eq!(parquet.parameters(), log.parameters());
     assert_eq!(parquet.warnings(), log.warnings());
     assert!(parquet.is_complete());
@@ -225,7 +225,7 @@ fn a_group_that_is_lost_leaves_rows_and_parameters_in_step() {
         let name = "crepitus.static_torque_nm";
         assert_eq!(in_force.number(name), expected.number(name), "row {row}");
     }
-    let totals = recording.books().totals;
+    let totals = recording.accounting().totals;
     assert_eq!(totals.damaged, 40_000);
     let warnings = recording.warnings().join("\n");
     assert!(
@@ -233,7 +233,7 @@ fn a_group_that_is_lost_leaves_rows_and_parameters_in_step() {
         "{warnings}"
     );
     assert!(warnings.contains("40000 damaged in the file"), "{warnings}");
-    let gap = recording.books().gaps[0];
+    let gap = recording.accounting().gaps[0];
     assert_eq!(
         (gap.row, gap.first_tick, gap.cause),
         (0, 1_000, Cause::Damaged)
@@ -291,10 +291,10 @@ fn rows_are_kept_without_any_metadata() {
     let whole = open(&bench.folder.path().join("parquet")).unwrap();
     assert_eq!(recording.metadata().id, whole.metadata().id);
     assert_eq!(recording.metadata().columns, whole.metadata().columns);
-    let books = recording.books();
+    let books = recording.accounting();
     assert_eq!(books.drive_restarts, 1);
     // But for those that the drive produced first after its restart, and dropped.
-    let totals = whole.books().totals;
+    let totals = whole.accounting().totals;
     assert_eq!(books.totals.received, totals.received);
     assert_eq!(books.totals.dropped, totals.dropped - 20);
     // A group that is damaged besides: the rest is kept.
@@ -302,7 +302,7 @@ fn rows_are_kept_without_any_metadata() {
     damaged[bench.whole.len() / 20] ^= 1;
     let said = bench.check(&damaged, 60_000);
     assert!(said.contains("Rows 0 to 39999 are damaged"), "{said}");
-    let totals = salvaged(&bench.write(&damaged)).books().totals;
+    let totals = salvaged(&bench.write(&damaged)).accounting().totals;
     assert_eq!((totals.received, totals.damaged), (60_000, 40_000));
     // Cut off in the last group.
     let cut = bench.whole.len() * 9 / 10;
@@ -365,7 +365,10 @@ fn a_recording_of_less_than_two_seconds_is_lost_with_its_group() {
     damaged[middle] ^= 1;
     bench.check(&damaged, 0);
     let recording = salvaged(&bench.write(&damaged));
-    assert_eq!(recording.books().totals.damaged, bench.all.len() as u64);
+    assert_eq!(
+        recording.accounting().totals.damaged,
+        bench.all.len() as u64
+    );
 }
 
 /// The groups of one where those of another were, seals and all.

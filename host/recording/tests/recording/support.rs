@@ -201,7 +201,7 @@ pub(crate) fn rows(recording: &Recording) -> Vec<Row> {
 
 /// The books add up, and are those of the rows.
 pub(crate) fn check_books(recording: &Recording) {
-    let totals = recording.books().totals;
+    let totals = recording.accounting().totals;
     assert_eq!(totals.produced, totals.received + totals.dropped);
     assert!(totals.by_device + totals.not_connected + totals.damaged <= totals.dropped);
     assert_eq!(totals.received, rows(recording).len() as u64);

@@ -18,7 +18,7 @@ fn what_was_recorded_is_read_with_its_gaps_and_parameters() {
     assert_eq!(recording.metadata().title, "a test");
     assert_eq!(rows(&recording), rows_of(&sent));
     check_books(&recording);
-    let books = recording.books();
+    let books = recording.accounting();
     assert_eq!(
         books.totals,
         Totals {

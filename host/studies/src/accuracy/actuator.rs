@@ -16,7 +16,7 @@ use crepitus_model::render::effects::vibration_actuator::{
     VibrationActuator, VibrationActuatorSettings,
 };
 use crepitus_model::render::effects::{DeviceEffect, Timing};
-use crepitus_model::render::position::Sight;
+use crepitus_model::render::position::Sensing;
 use crepitus_model::solver::locate::{ExactEvents, Locate};
 use crepitus_model::{
     Frozen, Real, Settings, SettingsError, ShaftStep, StepCoefficients, StickSlip,
@@ -140,7 +140,7 @@ fn law<F: Real>(step_s: f64) -> Result<VibrationActuator<F>, SettingsError> {
     let timing = Timing {
         step_s,
         delay_ticks: 1,
-        sight: Sight::IDEAL,
+        sensing: Sensing::IDEAL,
     };
     let settings = VibrationActuatorSettings::defaults();
     Ok(VibrationActuator::new(VibrationActuator::coefficients(

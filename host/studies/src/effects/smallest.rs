@@ -6,7 +6,7 @@ pub(super) type Set = u32;
 
 /// Result of the search.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Found<T> {
+pub(super) struct SmallestSet<T> {
     /// The sufficient sets of the smallest size, and their results.
     pub(super) sets: Vec<(Set, T)>,
     /// Number of sets tried.
@@ -19,7 +19,7 @@ pub(super) struct Found<T> {
 pub(super) fn smallest<T, E>(
     needs: &[Set],
     mut judge: impl FnMut(&[Set]) -> Result<Vec<Option<T>>, E>,
-) -> Result<Found<T>, E> {
+) -> Result<SmallestSet<T>, E> {
     let mut tried = 0;
     for size in 0..=needs.len() {
         let sets: Vec<Set> = sets(needs)
@@ -33,10 +33,10 @@ pub(super) fn smallest<T, E>(
             .filter_map(|(set, judged)| Some((set, judged?)))
             .collect();
         if !sets.is_empty() {
-            return Ok(Found { sets, tried });
+            return Ok(SmallestSet { sets, tried });
         }
     }
-    Ok(Found {
+    Ok(SmallestSet {
         sets: Vec::new(),
         tried,
     })
@@ -86,7 +86,7 @@ mod tests {
             .abs()
     }
 
-    fn within(limit: f64) -> Found<f64> {
+    fn within(limit: f64) -> SmallestSet<f64> {
         smallest(&NEEDS, |sets| {
             let judged = sets.iter().map(|set| error(*set));
             Ok::<_, ()>(judged.map(|e| (e <= limit).then_some(e)).collect())

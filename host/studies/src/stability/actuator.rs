@@ -1,7 +1,7 @@
 //! The vibration actuator on a leg, with the stages of the drive in its loop.
 
 use super::input::{ActuatorLoop, ActuatorRun, Upset};
-use super::observation::{ActuatorSeen, Observation};
+use super::observation::{ActuatorObservation, Observation};
 use super::parameter_changes::SLEW_NM_PER_S;
 use super::subject::Subject;
 use crate::vibration::loop_gain;
@@ -12,8 +12,8 @@ use crepitus_model::parameters::Tabled;
 use crepitus_model::render::effects::{EffectSettings, SwitchedEffects, Timing};
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
-use crepitus_model::render::position::{Position, Sight};
-use crepitus_model::render::{Pipeline, Seen};
+use crepitus_model::render::position::{Position, Sensing};
+use crepitus_model::render::{Pipeline, ShaftEstimate};
 use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{Crepitus, Real, Sample, SettingsError, StepCoefficients};
 use crepitus_plant::encoder::Encoder;
@@ -106,7 +106,7 @@ fn shake<F: Real>(
     let timing = Timing {
         step_s: run.step_s,
         delay_ticks: MOST_DELAY_TICKS,
-        sight: Sight::of_encoder(&encoder_settings),
+        sensing: Sensing::of_encoder(&encoder_settings),
     };
     let mut stages = stages::<F>(scene, &timing)?;
     let mut settings = scene.effect_settings();
@@ -125,7 +125,7 @@ fn shake<F: Real>(
     };
     let mut watched = Watched {
         late_s,
-        seen: ActuatorSeen::default(),
+        seen: ActuatorObservation::default(),
     };
     let mut row = Vec::new();
     let (mut is_armed, mut coil_v) = (true, 0.0);
@@ -162,7 +162,7 @@ fn shake<F: Real>(
         };
         stages.limits.set_energised(is_armed);
         let shown = stages.tick(
-            &Seen {
+            &ShaftEstimate {
                 sample,
                 omega_rad_s: reader.omega_rad_s(),
                 place: Position::at(count),
@@ -202,7 +202,7 @@ fn shake<F: Real>(
 /// Measures as it goes.
 struct Watched {
     late_s: f64,
-    seen: ActuatorSeen,
+    seen: ActuatorObservation,
 }
 
 impl Watched {
@@ -233,7 +233,7 @@ impl Watched {
         }
     }
 
-    fn finish(self) -> ActuatorSeen {
+    fn finish(self) -> ActuatorObservation {
         self.seen
     }
 }

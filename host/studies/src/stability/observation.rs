@@ -61,14 +61,14 @@ pub(super) struct Observation {
     /// Attempts that were accepted by mistake.
     pub(super) accepted: Vec<&'static str>,
     /// Observation of symptoms besides crepitus.
-    pub(super) symptoms: SymptomsSeen,
+    pub(super) symptoms: SymptomObservation,
     /// Observation of the vibration actuator.
-    pub(super) actuator: ActuatorSeen,
+    pub(super) actuator: ActuatorObservation,
 }
 
 /// Observation of the vibration actuator.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct ActuatorSeen {
+pub(super) struct ActuatorObservation {
     pub(super) whole: ActuatorPart,
     /// Observation of the run from the time that the trial sets.
     pub(super) late: ActuatorPart,
@@ -96,7 +96,7 @@ pub(super) struct ActuatorPart {
 
 /// Observation of symptoms besides crepitus.
 #[derive(Clone, Debug, Default)]
-pub(super) struct SymptomsSeen {
+pub(super) struct SymptomObservation {
     /// Their own events.
     pub(super) events: Vec<SymptomEvent>,
     /// Events of the reference, if it solves the input.

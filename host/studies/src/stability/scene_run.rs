@@ -81,7 +81,7 @@ pub(super) fn observe(subject: Subject, input: &SceneRun, late_s: f64) -> Observ
 
 /// Records of a run.
 #[derive(Default)]
-struct Kept {
+struct RunRecords {
     place: usize,
     /// Times, s, and torques, N·m.
     rows: Vec<(f64, f64)>,
@@ -90,15 +90,15 @@ struct Kept {
     missing_share: Option<f64>,
 }
 
-fn follow(subject: Subject, input: &SceneRun) -> Option<Kept> {
+fn follow(subject: Subject, input: &SceneRun) -> Option<RunRecords> {
     let text = input.scene(subject);
     let scene = Scene::parse(Path::new("case.toml"), &text, &Overrides::default()).ok()?;
     let place = columns(&scene)
         .iter()
         .position(|column| column.name == input.column)?;
-    let mut kept = Kept {
+    let mut kept = RunRecords {
         place,
-        ..Kept::default()
+        ..RunRecords::default()
     };
     let summary = run(&scene, &mut kept).ok()?;
     let plant = summary.plant_energy;
@@ -106,7 +106,7 @@ fn follow(subject: Subject, input: &SceneRun) -> Option<Kept> {
     Some(kept)
 }
 
-impl Observer for Kept {
+impl Observer for RunRecords {
     type Error = Infallible;
 
     fn row(&mut self, values: &[f64]) -> Result<(), Infallible> {

@@ -4,7 +4,7 @@
 mod energy;
 
 use super::input::{RefusedSymptoms, SymptomRun};
-use super::observation::{Observation, SymptomsSeen};
+use super::observation::{Observation, SymptomObservation};
 use super::parameter_changes::SLEW_NM_PER_S;
 use super::subject::{Rung, Subject};
 use crate::sampling::Sampling;
@@ -18,8 +18,8 @@ use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::effects::symptom::Change;
 use crepitus_model::render::effects::{EffectSettings, EffectSpec, SwitchedEffects, Timing};
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
-use crepitus_model::render::position::{Position, Sight};
-use crepitus_model::render::{Addition, Check, Seen, Shown};
+use crepitus_model::render::position::{Position, Sensing};
+use crepitus_model::render::{Addition, Check, ShaftEstimate, Shown};
 use crepitus_model::{Real, Sample, SettingsError, ShaftStep};
 use crepitus_plant::encoder::Encoder;
 use crepitus_scene::scene::Precision;
@@ -120,7 +120,7 @@ impl Here<'_> {
     fn stepped<F: Real>(&self) -> Result<(Observation, Vec<f64>), SettingsError> {
         let (run, step_s) = (self.run, self.run.step_s);
         let mut view = View::<F>::new(run, &self.sampling)?;
-        let mut device = Device::<F>::new(run, view.sight, &view.place)?;
+        let mut device = Device::<F>::new(run, view.sensing, &view.place)?;
         let mut seen = self.begun();
         let mut torques_nm = Vec::new();
         let mut energy = Energy::new(device.now.stiffness_nm_per_rad(None), run);
@@ -154,11 +154,11 @@ impl Here<'_> {
         }
         let events = own(events);
         seen.tally.last_s = events.last().map(|event| event.time_s);
-        seen.symptoms = SymptomsSeen {
+        seen.symptoms = SymptomObservation {
             events,
             returned: energy.returned(),
             net_returned_j: energy.net_returned_j(),
-            ..SymptomsSeen::default()
+            ..SymptomObservation::default()
         };
         Ok((seen, torques_nm))
     }
@@ -173,10 +173,10 @@ struct Device<F: Real> {
 }
 
 impl<F: Real> Device<F> {
-    fn new(run: &SymptomRun, sight: Sight, place: &Position<F>) -> Result<Self, SettingsError> {
+    fn new(run: &SymptomRun, sensing: Sensing, place: &Position<F>) -> Result<Self, SettingsError> {
         let timing = Timing {
             delay_ticks: MOST_DELAY_TICKS,
-            sight,
+            sensing,
             ..follow::timing(run.step_s)
         };
         let step_s = F::from_f64(run.step_s);
@@ -206,7 +206,7 @@ impl<F: Real> Device<F> {
         mut on_change: impl FnMut(Change<F>),
     ) -> f64 {
         let input = self.check.check(&sample);
-        let seen = Seen {
+        let seen = ShaftEstimate {
             sample,
             omega_rad_s: F::ZERO,
             place,
@@ -234,7 +234,7 @@ struct View<'a, F> {
     encoder: Encoder,
     reader: EncoderReader<F>,
     counts: bool,
-    sight: Sight,
+    sensing: Sensing,
     place: Position<F>,
     angle_rad: f64,
     /// Samples lost since the last one, and their travel, rad.
@@ -249,10 +249,10 @@ impl<'a, F: Real> View<'a, F> {
         let walk = sampling.walk_from(0);
         let (angle_rad, omega_rad_s) = walk.now();
         let first = encoder.count(angle_rad);
-        let (sight, place) = if run.counts {
-            (Sight::of_encoder(&settings), Position::at(first))
+        let (sensing, place) = if run.counts {
+            (Sensing::of_encoder(&settings), Position::at(first))
         } else {
-            (Sight::IDEAL, Sight::IDEAL.position(angle_rad))
+            (Sensing::IDEAL, Sensing::IDEAL.position(angle_rad))
         };
         Ok(Self {
             walk,
@@ -260,7 +260,7 @@ impl<'a, F: Real> View<'a, F> {
             reader: EncoderReader::new(&settings, run.step_s, first, F::from_f64(omega_rad_s))?,
             encoder,
             counts: run.counts,
-            sight,
+            sensing,
             place,
             angle_rad,
             missed: 0,
@@ -287,7 +287,7 @@ impl<'a, F: Real> View<'a, F> {
             self.place = Position::at(count);
             self.reader.read(count)
         } else {
-            self.place = Sight::IDEAL.position(*angle_rad);
+            self.place = Sensing::IDEAL.position(*angle_rad);
             ShaftStep {
                 delta_phi_rad,
                 ..*shaft

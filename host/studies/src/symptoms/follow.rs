@@ -3,20 +3,20 @@
 use super::event::SymptomEvent;
 use super::given::Given;
 use crate::sampling::{CHUNK_STEPS, Sampling};
-use crepitus_model::render::Seen;
+use crepitus_model::render::ShaftEstimate;
 use crepitus_model::render::Shown;
 use crepitus_model::render::effects::symptom::Change;
 use crepitus_model::render::effects::{DeviceEffect, EffectSpec, LawVisitor, Tick, Timing};
 use crepitus_model::render::input_check::Checked;
-use crepitus_model::render::position::{Position, Scale, Sight, Travel};
+use crepitus_model::render::position::{Position, Scale, Sensing, Travel};
 use crepitus_model::{Real, SettingsError, ShaftStep};
 
-/// Timing and sight of a law that knows the joint's true motion.
+/// Timing and sensing of a law that knows the joint's true motion.
 pub fn timing(step_s: f64) -> Timing {
     Timing {
         step_s,
         delay_ticks: 1,
-        sight: Sight::IDEAL,
+        sensing: Sensing::IDEAL,
     }
 }
 
@@ -31,7 +31,12 @@ pub fn tick<F: Real, E: DeviceEffect<F>>(
 ) -> F {
     let input = Checked::Step(*shaft);
     let travel = Travel::plausible(&input, &place, scale);
-    let tick = Tick::of(&Seen::taken(shaft, place), &input, travel.as_ref(), F::ONE);
+    let tick = Tick::of(
+        &ShaftEstimate::taken(shaft, place),
+        &input,
+        travel.as_ref(),
+        F::ONE,
+    );
     law.added(
         &tick,
         &mut Shown::nothing(),
@@ -74,7 +79,7 @@ impl<F: Real, T: FnMut(u64, f64)> LawVisitor<F> for Run<'_, F, T> {
         let mut events = Vec::new();
         let mut walk = self.sampling.walk_from(0);
         let mut angle_rad = walk.now().0;
-        law.rest(&Sight::IDEAL.position(angle_rad));
+        law.rest(&Sensing::IDEAL.position(angle_rad));
         let mut chunk: Vec<(f64, ShaftStep<F>)> = Vec::with_capacity(CHUNK_STEPS);
         let mut n = 0;
         loop {
@@ -84,7 +89,7 @@ impl<F: Real, T: FnMut(u64, f64)> LawVisitor<F> for Run<'_, F, T> {
             }
             for (end_rad, shaft) in &chunk {
                 angle_rad = *end_rad;
-                let place = Sight::IDEAL.position(angle_rad);
+                let place = Sensing::IDEAL.position(angle_rad);
                 let torque_nm = tick(&mut law, shaft, place, &self.scale, |change| {
                     let fraction = change.fraction.to_f64();
                     let (from, to) = (shaft.omega_start_rad_s, shaft.omega_end_rad_s);

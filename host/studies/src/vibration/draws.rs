@@ -1,6 +1,6 @@
 //! Everything off at once: actuator, shell, seat, cuff and hand, each by up to 30 %.
 
-use super::signals::Kept;
+use super::signals::SettledSignals;
 use super::{BAND_HZ, MOST_LAG_S};
 use crate::random::Random;
 use crepitus_model::Real;
@@ -96,7 +96,10 @@ pub(super) fn scenes(scene: &Scene, count: usize) -> Vec<Scene> {
 
 /// Compares the draws with the nominal device, and each with a bare knee that shows its
 /// torque.
-pub(super) fn judge(drawn: &[Result<Kept, String>], device: Option<&Kept>) -> Option<Draws> {
+pub(super) fn judge(
+    drawn: &[Result<SettledSignals, String>],
+    device: Option<&SettledSignals>,
+) -> Option<Draws> {
     let device = device?;
     let (low, high) = BAND_HZ;
     let mut levels = Vec::new();
@@ -139,10 +142,10 @@ fn quantile(sorted: &[f64], percent: usize) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn kept(level: f64) -> Kept {
+    fn kept(level: f64) -> SettledSignals {
         let mut random = Random::new(1);
         let acceleration: Vec<f64> = (0..40_000).map(|_| level * (random.unit() - 0.5)).collect();
-        Kept {
+        SettledSignals {
             step_s: 5e-5,
             torque: Vec::new(),
             felt: Vec::new(),

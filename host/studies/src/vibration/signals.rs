@@ -9,7 +9,7 @@ use crepitus_scene::{Scene, Walk};
 
 /// Signals of one run, once it has settled.
 #[derive(Clone, Debug)]
-pub(super) struct Kept {
+pub(super) struct SettledSignals {
     /// Time from one value to the next, s.
     pub(super) step_s: f64,
     /// The joint's torque, N·m.
@@ -56,7 +56,7 @@ impl Observer for Recorder<'_> {
 }
 
 /// Runs a scene and keeps its signals, or says why there are none.
-pub(super) fn record(scene: &Scene, meter: &Meter) -> Result<Kept, String> {
+pub(super) fn record(scene: &Scene, meter: &Meter) -> Result<SettledSignals, String> {
     let mut scene = scene.clone();
     scene.trace_step_s = scene.step_s();
     let names: Vec<_> = columns(&scene).iter().map(|c| c.name).collect();
@@ -88,7 +88,7 @@ pub(super) fn record(scene: &Scene, meter: &Meter) -> Result<Kept, String> {
             excursion_mm: 1e3 * excursion.iter().fold(0.0_f64, |most, x| most.max(x.abs())),
         }
     });
-    Ok(Kept {
+    Ok(SettledSignals {
         step_s: scene.step_s(),
         torque,
         felt,

@@ -244,7 +244,7 @@ impl<F: Real> Law for ClaspKnife<F> {
     ) -> Result<ClaspKnifeCoefficients<F>, SettingsError> {
         Self::check(settings)?;
         let s = settings;
-        let place = |deg: f64| timing.sight.position(deg.to_radians());
+        let place = |deg: f64| timing.sensing.position(deg.to_radians());
         Ok(ClaspKnifeCoefficients {
             scale: timing.scale()?,
             sense: sense(s.muscles),

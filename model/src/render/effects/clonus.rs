@@ -272,7 +272,7 @@ impl<F: Real> Law for Clonus<F> {
         Ok(ClonusCoefficients {
             scale: timing.scale()?,
             sense: sense(s.muscles),
-            hold: timing.sight.position(s.hold_deg.to_radians()),
+            hold: timing.sensing.position(s.hold_deg.to_radians()),
             back_rad: way_back(s.hysteresis_deg),
             least_rad_s: F::from_f64(s.start_velocity_deg_s.to_radians()),
             amplitude_nm: F::from_f64(s.amplitude_nm),

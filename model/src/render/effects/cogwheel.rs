@@ -215,18 +215,18 @@ impl<F: Real> Law for Cogwheel<F> {
                 Clock::Time((s.frequency_hz * timing.step_s * TOOTH).whole())
             } else {
                 Clock::Space(
-                    (timing.sight.rad_per_count / pitch_rad * TOOTH).whole(),
+                    (timing.sensing.rad_per_count / pitch_rad * TOOTH).whole(),
                     (TOOTH / (pitch_rad * RESTS)).whole(),
                 )
             },
             low_from: (s.duty * TOOTH).whole(),
-            flicker: (timing.sight.flicker_rad / pitch_rad * TOOTH).whole(),
-            flicker_rad: F::from_f64(timing.sight.flicker_rad),
+            flicker: (timing.sensing.flicker_rad / pitch_rad * TOOTH).whole(),
+            flicker_rad: F::from_f64(timing.sensing.flicker_rad),
             high_nm: F::from_f64(s.torque_nm),
             low_nm: F::from_f64(s.low_share * s.torque_nm),
             stiffness: F::from_f64(s.torque_nm / s.presliding_deg.to_radians()),
             elastic: F::from_f64(s.elastic_nm_per_rad),
-            neutral: timing.sight.position(s.neutral_deg.to_radians()),
+            neutral: timing.sensing.position(s.neutral_deg.to_radians()),
         })
     }
 
@@ -483,7 +483,7 @@ mod tests {
     use super::*;
     use crate::joint::ShaftStep;
     use crate::render::input_check::Checked;
-    use crate::render::position::Sight;
+    use crate::render::position::Sensing;
     use std::vec::Vec;
 
     #[test]
@@ -494,21 +494,21 @@ mod tests {
             ..CogwheelSettings::default()
         };
         // So coarse that what lies between two counts is most of a tooth.
-        let sight = Sight {
+        let sensing = Sensing {
             rad_per_count: 0.1,
-            ..Sight::IDEAL
+            ..Sensing::IDEAL
         };
         let timing = Timing {
             step_s: 5e-5,
             delay_ticks: 0,
-            sight,
+            sensing,
         };
         let with: CogwheelCoefficients<f64> = Cogwheel::coefficients(&settings, &timing).unwrap();
         let Clock::Space(per_count, per_rest) = with.clock else {
             panic!("a clock in space");
         };
         for angle_rad in [0.0, 0.03, 0.1, 0.15, 2.09, -0.03, -1.77] {
-            let found = angle::<f64>(&sight.position(angle_rad), per_count, per_rest);
+            let found = angle::<f64>(&sensing.position(angle_rad), per_count, per_rest);
             let teeth = angle_rad / settings.pitch_deg.to_radians();
             let expected = teeth - libm::floor(teeth);
             #[expect(clippy::cast_precision_loss, reason = "far less than is asked for")]
@@ -530,7 +530,7 @@ mod tests {
         let timing = Timing {
             step_s: 1.0 / 16_384.0,
             delay_ticks: 0,
-            sight: Sight {
+            sensing: Sensing {
                 rad_per_count,
                 flicker_rad: flicker_counts * rad_per_count,
                 velocity_lag_s: 0.0,
@@ -542,7 +542,7 @@ mod tests {
 
     /// Goes on by a number of counts in a tick, to this one; what happened, and when.
     fn go(law: &mut Cogwheel<f64>, timing: &Timing, to: i32, counts: i32) -> Vec<(Word, f64)> {
-        let delta_phi_rad = f64::from(counts) * timing.sight.rad_per_count;
+        let delta_phi_rad = f64::from(counts) * timing.sensing.rad_per_count;
         let omega_rad_s = delta_phi_rad / timing.step_s;
         let shaft = ShaftStep {
             delta_phi_rad,

@@ -139,7 +139,7 @@ impl<F: Real> Law for LeadPipe<F> {
             torque_nm: F::from_f64(s.torque_nm),
             stiffness: F::from_f64(s.torque_nm / s.presliding_deg.to_radians()),
             elastic: F::from_f64(s.elastic_nm_per_rad),
-            neutral: timing.sight.position(s.neutral_deg.to_radians()),
+            neutral: timing.sensing.position(s.neutral_deg.to_radians()),
         })
     }
 

@@ -213,7 +213,7 @@ struct End<F> {
 impl<F: Real> End<F> {
     fn new(limit_deg: f64, feel: &EndFeel, timing: &Timing) -> Self {
         Self {
-            place: timing.sight.position(limit_deg.to_radians()),
+            place: timing.sensing.position(limit_deg.to_radians()),
             slope: F::from_f64(feel.stiffness_nm_per_rad),
             bend: F::from_f64(feel.stiffening_nm_per_rad2),
             cap_nm: F::from_f64(feel.torque_nm),
@@ -481,7 +481,7 @@ impl<F: Real> Law for RangeLimit<F> {
         let s = settings;
         Ok(RangeLimitCoefficients {
             scale: timing.scale()?,
-            flicker_rad: F::from_f64(timing.sight.flicker_rad),
+            flicker_rad: F::from_f64(timing.sensing.flicker_rad),
             extension: End::new(s.extension_limit_deg, &s.extension(), timing),
             flexion: End::new(s.flexion_limit_deg, &s.flexion(), timing),
         })

@@ -304,7 +304,7 @@ impl<F: Real> Law for Spasticity<F> {
     ) -> Result<SpasticityCoefficients<F>, SettingsError> {
         Self::check(settings)?;
         let threshold = Threshold {
-            place: timing.sight.position(settings.threshold_deg.to_radians()),
+            place: timing.sensing.position(settings.threshold_deg.to_radians()),
             shift_s: F::from_f64(settings.velocity_shift_s),
             sense: sense(settings.muscles),
         };
@@ -405,7 +405,7 @@ mod tests {
     use crate::render::effects::tests::TIMING;
     use crate::render::input_check::Checked;
     use crate::render::position::tests::travel;
-    use crate::render::position::{Scale, Sight};
+    use crate::render::position::{Scale, Sensing};
 
     #[test]
     fn a_level_is_met_where_angle_and_velocity_make_it() {
@@ -413,7 +413,7 @@ mod tests {
             for (sense, shift_s) in [(1.0, 0.0), (-1.0, 0.0), (1.0, 1e-5), (-1.0, 1e-5)] {
                 let travel = travel(sense * from, sense * to);
                 let threshold = Threshold {
-                    place: Sight::IDEAL.position(1.0),
+                    place: Sensing::IDEAL.position(1.0),
                     shift_s,
                     sense,
                 };
@@ -460,8 +460,8 @@ mod tests {
                     omega_start_rad_s: f(rad_s),
                     omega_end_rad_s: f(rad_s),
                 };
-                let to = Sight::IDEAL.position(1.0);
-                let scale = Scale::new(&Sight::IDEAL, TIMING.step_s);
+                let to = Sensing::IDEAL.position(1.0);
+                let scale = Scale::new(&Sensing::IDEAL, TIMING.step_s);
                 let travel = Travel::of(&Checked::Step(shaft), &to, &scale).unwrap();
                 operations(|| law.follow(&travel, &mut ())).1.all()
             };

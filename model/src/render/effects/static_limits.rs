@@ -240,7 +240,7 @@ mod tests {
     use super::super::tests::TIMING;
     use super::*;
     use crate::render::input_check::{InputCheck, InputLimits};
-    use crate::render::{Addition, Check, Seen, Shown};
+    use crate::render::{Addition, Check, ShaftEstimate, Shown};
     use crate::{Sample, ShaftStep, Tabled};
     use std::vec::Vec;
 
@@ -251,7 +251,7 @@ mod tests {
     fn follow(settings: &EffectSettings, degrees: &[f64], deg_s: f64) -> Vec<(f64, f64, f64)> {
         let mut effects: Effects<f64> = settings.laws(&TIMING).unwrap();
         let mut check = InputCheck::new(&InputLimits::device(STEP_S), STEP_S, 0.0);
-        effects.rest(&TIMING.sight.position(degrees[0].to_radians()));
+        effects.rest(&TIMING.sensing.position(degrees[0].to_radians()));
         let mut rows = Vec::new();
         for ends in degrees.windows(2) {
             let (from, to) = (ends[0].to_radians(), ends[1].to_radians());
@@ -265,10 +265,10 @@ mod tests {
                     omega_start_rad_s: omega_rad_s,
                     omega_end_rad_s: omega_rad_s,
                 });
-                let seen = Seen {
+                let seen = ShaftEstimate {
                     sample,
                     omega_rad_s,
-                    place: TIMING.sight.position(angle_rad),
+                    place: TIMING.sensing.position(angle_rad),
                     is_driven: true,
                 };
                 let mut shown = Shown::nothing();

@@ -28,7 +28,7 @@ macro_rules! effects {
                 $(if let (Some(law), Some(settings)) = (&mut self.$symptom, &settings.$symptom) {
                     law.retime(settings, timing, ratio);
                 })*
-                self.scale = Scale::new(&timing.sight, timing.step_s);
+                self.scale = Scale::new(&timing.sensing, timing.step_s);
             }
 
             /// Adds what the symptoms have on a joint that rests at a place.
@@ -165,7 +165,7 @@ macro_rules! effects {
                         None => None,
                     },)*
                     tank: tank(timing),
-                    scale: Scale::new(&timing.sight, timing.step_s),
+                    scale: Scale::new(&timing.sensing, timing.step_s),
                 })
             }
 
@@ -188,7 +188,7 @@ macro_rules! effects {
                         )),
                         None => Some(None),
                     },)*
-                    scale: Scale::new(&timing.sight, timing.step_s),
+                    scale: Scale::new(&timing.sensing, timing.step_s),
                 })
             }
         }
@@ -226,7 +226,7 @@ macro_rules! effects {
             #[inline]
             fn tick(
                 &mut self,
-                seen: &Seen<F>,
+                seen: &ShaftEstimate<F>,
                 input: &Checked<F>,
                 shown: &mut Shown<F>,
                 observe: &mut impl Observe<F>,
@@ -295,7 +295,7 @@ macro_rules! effects {
                     on: 0,
                     tank: tank(timing),
                     $($addition: Switched::new(slew_nm),)*
-                    scale: Scale::new(&timing.sight, timing.step_s),
+                    scale: Scale::new(&timing.sensing, timing.step_s),
                     $($symptom: Switched::new(slew_nm),)*
                 }
             }
@@ -320,7 +320,7 @@ macro_rules! effects {
             #[inline]
             fn add_symptoms(
                 &mut self,
-                seen: &Seen<F>,
+                seen: &ShaftEstimate<F>,
                 input: &Checked<F>,
                 paid_share: F,
                 shown: &mut Shown<F>,
@@ -366,7 +366,7 @@ macro_rules! effects {
             #[inline]
             fn tick(
                 &mut self,
-                seen: &Seen<F>,
+                seen: &ShaftEstimate<F>,
                 input: &Checked<F>,
                 shown: &mut Shown<F>,
                 observe: &mut impl Observe<F>,

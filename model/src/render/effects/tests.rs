@@ -6,20 +6,20 @@ use crate::parameters::Kind;
 pub(crate) const TIMING: Timing = Timing {
     step_s: 5e-5,
     delay_ticks: 1,
-    sight: Sight::IDEAL,
+    sensing: Sensing::IDEAL,
 };
 
-pub(crate) fn seen(omega_rad_s: f32) -> Seen<f32> {
+pub(crate) fn seen(omega_rad_s: f32) -> ShaftEstimate<f32> {
     let shaft = ShaftStep {
         delta_phi_rad: 0.0,
         omega_start_rad_s: omega_rad_s,
         omega_end_rad_s: omega_rad_s,
     };
-    Seen::taken(&shaft, Position::at(0))
+    ShaftEstimate::taken(&shaft, Position::at(0))
 }
 
 /// One without a sample.
-pub(crate) fn missing(seen: &Seen<f32>) -> Tick<'static, f32> {
+pub(crate) fn missing(seen: &ShaftEstimate<f32>) -> Tick<'static, f32> {
     Tick::of(seen, &Checked::Missing(1), None, 1.0)
 }
 
@@ -64,7 +64,7 @@ fn a_sample_that_is_refused_moves_nothing() {
         delta_phi_rad: 1e3,
         ..ShaftStep::default()
     };
-    let seen = Seen::taken(&shaft, Position::at(0));
+    let seen = ShaftEstimate::taken(&shaft, Position::at(0));
     let travel_rad = |input| Tick::of(&seen, &input, None, 1.0).travel_rad;
     assert_eq!(travel_rad(Checked::Missing(1)), 0.0);
     assert_eq!(travel_rad(Checked::Step(shaft)), 1e3);

@@ -335,7 +335,7 @@ impl<F: Real> Law for Texture<F> {
         let pitch_rad = s.pitch_deg.to_radians();
         let width_rad = s.width_share * pitch_rad;
         let height_nm = s.peak_nm - s.base_nm;
-        let rad_per_count = timing.sight.rad_per_count;
+        let rad_per_count = timing.sensing.rad_per_count;
         let parts = pitch_rad / rad_per_count * f64::from(1_u32 << PARTS);
         let seed = u32::try_from(s.seed.whole()).unwrap_or(u32::MAX);
         let (patch, there) = s.patches();
@@ -353,7 +353,7 @@ impl<F: Real> Law for Texture<F> {
             there,
             key: seed.wrapping_mul(0x9E37_79B9),
             stiffness: F::from_f64(s.stiffness_nm_per_rad),
-            flicker_rad: F::from_f64(timing.sight.flicker_rad),
+            flicker_rad: F::from_f64(timing.sensing.flicker_rad),
         })
     }
 

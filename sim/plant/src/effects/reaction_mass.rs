@@ -152,14 +152,14 @@ fn mount(given: &Given, context: &Context, left: Box<dyn Chain>) -> Box<dyn Chai
         contact_m: None,
         volts: 0.0,
         force_n: 0.0,
-        books: Books::default(),
+        books: EnergyAccount::default(),
     };
     Loaded::on(left, actuator)
 }
 
 /// Energy that came and went, J.
 #[derive(Clone, Copy, Debug, Default)]
-struct Books {
+struct EnergyAccount {
     supply: f64,
     weight: f64,
     copper: f64,
@@ -191,7 +191,7 @@ struct ReactionMass {
     /// Voltage applied to the coil, and force on the carrier, in the last step.
     volts: f64,
     force_n: f64,
-    books: Books,
+    books: EnergyAccount,
 }
 
 /// One step of it, for a carrier whose mean velocity is w, rad/s.

@@ -22,7 +22,7 @@ use crepitus_model::render::turn_back::most_rad_per_count;
 use crepitus_model::{Parameters, Restart, Settings};
 use fastrand::Rng;
 use hands::{Hand, Loser, Losses, TurnsBack};
-use rig::{Acts, Rig, Sight, TICK_S, motor_lag_ticks};
+use rig::{Acts, Rig, Sensing, TICK_S, motor_lag_ticks};
 use std::f64::consts::TAU;
 
 /// Joints of different pitch and torque; the first is the paper's.
@@ -44,14 +44,14 @@ const fn numbers(inertia: f64, stiffness: f64, kinetic: f64, static_: f64) -> Pa
 
 /// Possible devices: all but the last two are a sensor or a motor that
 /// there is not.
-const RIGS: [(Sight, Acts); 7] = [
-    (Sight::True, Acts::Late(0)),
-    (Sight::True, Acts::Late(1)),
-    (Sight::True, Acts::Late(2)),
-    (Sight::True, Acts::Motor),
-    (Sight::Counts, Acts::Late(1)),
-    (Sight::Counts, Acts::Late(2)),
-    (Sight::Counts, Acts::Motor),
+const RIGS: [(Sensing, Acts); 7] = [
+    (Sensing::True, Acts::Late(0)),
+    (Sensing::True, Acts::Late(1)),
+    (Sensing::True, Acts::Late(2)),
+    (Sensing::True, Acts::Motor),
+    (Sensing::Counts, Acts::Late(1)),
+    (Sensing::Counts, Acts::Late(2)),
+    (Sensing::Counts, Acts::Motor),
 ];
 
 fn with(parameters: Parameters) -> Settings {
@@ -68,7 +68,7 @@ fn through_the_motor_a_shaken_spring_returns_what_its_lag_says() {
     for (joint, p) in JOINTS {
         let amplitude = 0.9 * p.static_torque_nm / p.stiffness_nm_per_rad;
         for hertz in [5.0, 20.0, 50.0, 100.0, 200.0] {
-            let mut rig = Rig::new(&with(p), Sight::True, Acts::Motor);
+            let mut rig = Rig::new(&with(p), Sensing::True, Acts::Motor);
             let angle = |n: u32| amplitude * (TAU * hertz * f64::from(n) * TICK_S).sin();
             for n in 0..40_000 {
                 rig.turn(angle(n + 1) - angle(n), false);
@@ -86,7 +86,12 @@ fn through_the_motor_a_shaken_spring_returns_what_its_lag_says() {
 }
 
 /// The worst share of hands of every kind.
-fn worst(settings: &Settings, rig: (Sight, Acts), hands: u64, losses: Option<Losses>) -> [f64; 2] {
+fn worst(
+    settings: &Settings,
+    rig: (Sensing, Acts),
+    hands: u64,
+    losses: Option<Losses>,
+) -> [f64; 2] {
     let mut worst = [0.0_f64; 2];
     for kind in Hand::ALL {
         for seed in 0..hands {
@@ -159,7 +164,10 @@ fn nor_at_a_joint_within_the_guards_condition() {
             continue;
         }
         joints += 1;
-        for rig in [(Sight::Counts, Acts::Late(2)), (Sight::Counts, Acts::Motor)] {
+        for rig in [
+            (Sensing::Counts, Acts::Late(2)),
+            (Sensing::Counts, Acts::Motor),
+        ] {
             worst(&settings, rig, 2, None);
         }
     }
@@ -177,9 +185,9 @@ fn nor_where_samples_are_lost() {
         Losses::Retreats(4, 25),
     ] {
         for rig in [
-            (Sight::True, Acts::Late(0)),
-            (Sight::True, Acts::Motor),
-            (Sight::Counts, Acts::Motor),
+            (Sensing::True, Acts::Late(0)),
+            (Sensing::True, Acts::Motor),
+            (Sensing::Counts, Acts::Motor),
         ] {
             let mut most = [0.0_f64; 2];
             for (_, p) in JOINTS {
@@ -201,7 +209,7 @@ fn turned_back(settings: &Settings, acts: Acts) -> f64 {
     let mut worst = 0.0_f64;
     for seed in 0..40 {
         let hand = TurnsBack::slowly(&mut Rng::with_seed(seed), count_rad);
-        let mut rig = Rig::new(settings, Sight::Counts, acts);
+        let mut rig = Rig::new(settings, Sensing::Counts, acts);
         hand.shake(&mut rig, 10_000);
         worst = worst.max(rig.share());
     }

@@ -18,7 +18,7 @@ pub(crate) const TICK_S: f64 = 5e-5;
 
 /// The shaft as the joint measures it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Sight {
+pub(crate) enum Sensing {
     /// The true angle.
     True,
     /// The counts of the device's encoder, and the speed estimated from them.
@@ -103,7 +103,7 @@ pub(crate) struct Rig {
     settings: Validated<Settings>,
     renderer: Renderer<f32, ExactEvents>,
     reader: EncoderReader<f32>,
-    sight: Sight,
+    sensing: Sensing,
     motors: Option<Motors>,
     observer: EnergyObserver<f64>,
     /// Observer with the terms of lost samples left out.
@@ -128,7 +128,7 @@ fn count(angle_rad: f64) -> i32 {
 }
 
 impl Rig {
-    pub(crate) fn new(settings: &Settings, sight: Sight, acts: Acts) -> Self {
+    pub(crate) fn new(settings: &Settings, sensing: Sensing, acts: Acts) -> Self {
         let settings = settings.validate().expect("allowed");
         let encoder = EncoderSettings::default();
         let renderer = Renderer::of(
@@ -146,7 +146,7 @@ impl Rig {
             settings,
             renderer,
             reader: EncoderReader::new(&encoder, TICK_S, 0, 0.0).expect("defaults are allowed"),
-            sight,
+            sensing,
             motors: (acts == Acts::Motor).then(Motors::new),
             observer,
             ungranted: observer,
@@ -189,10 +189,10 @@ impl Rig {
             return Sample::Lost;
         }
         let travel_rad = self.angle_rad - std::mem::replace(&mut self.seen_rad, self.angle_rad);
-        Sample::Taken(match self.sight {
-            Sight::Counts => self.reader.read(count(self.angle_rad)),
+        Sample::Taken(match self.sensing {
+            Sensing::Counts => self.reader.read(count(self.angle_rad)),
             // Straight through each tick; the speed jumps in between.
-            Sight::True => ShaftStep {
+            Sensing::True => ShaftStep {
                 delta_phi_rad: single(travel_rad),
                 omega_start_rad_s: single(omega_rad_s),
                 omega_end_rad_s: single(omega_rad_s),
@@ -224,9 +224,9 @@ impl Rig {
     fn allowed(&self) -> f64 {
         let p = &self.settings.parameters;
         let stroke_rad = p.static_torque_nm / p.stiffness_nm_per_rad;
-        match self.sight {
-            Sight::True => 1.0,
-            Sight::Counts => 1.0 + EncoderSettings::default().rad_per_count() / stroke_rad,
+        match self.sensing {
+            Sensing::True => 1.0,
+            Sensing::Counts => 1.0 + EncoderSettings::default().rad_per_count() / stroke_rad,
         }
     }
 

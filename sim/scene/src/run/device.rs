@@ -13,7 +13,7 @@ use crate::walk::Cut;
 use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::effects::EffectSpec;
 use crepitus_model::render::input_check::Sample;
-use crepitus_model::render::{Bare, Seen, Shown};
+use crepitus_model::render::{Bare, ShaftEstimate, Shown};
 use crepitus_model::solver::locate::Locate;
 use crepitus_model::solver::{LocatorVisitor, Solver, with_frozen_locator};
 use crepitus_model::{Real, Settings, SettingsError, StickSlip, Validated};
@@ -307,7 +307,7 @@ fn first<F: Real>(
     if scene.is_device {
         return shown;
     }
-    let seen = Seen {
+    let seen = ShaftEstimate {
         sample: Sample::Lost,
         omega_rad_s: F::from_f64(shaft.omega_rad_s),
         place,
@@ -345,7 +345,7 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
         let (accounting, recorder) = (&mut self.accounting, &mut self.recorder);
         let events = RefCell::new(events);
         self.shown = self.stages.tick(
-            &Seen::taken(&seen, self.sensor.place(to)),
+            &ShaftEstimate::taken(&seen, self.sensor.place(to)),
             &mut |event| {
                 let event = accounting.event(start_s, &seen, &event);
                 events.borrow_mut().push(Happened::Joint(event));
@@ -378,7 +378,7 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
             self.retiming.ticks_of(part.length_s);
             let is_last = left == 0;
             self.shown = self.stages.tick_part(
-                &Seen::taken(&seen, self.sensor.place(to)),
+                &ShaftEstimate::taken(&seen, self.sensor.place(to)),
                 (&self.retiming, is_last, jump_nm),
                 &mut |event| {
                     let event = accounting.event(part.start_s, &seen, &event);
@@ -452,7 +452,7 @@ impl<F: Real, P: Rendering<F>, S: Sensor<F>> Device for Watching<F, P, S> {
         let seen = self.sensor.see(from, to);
         let recorder = &mut self.recorder;
         self.shown = self.stages.tick(
-            &Seen::taken(&seen, self.sensor.place(to)),
+            &ShaftEstimate::taken(&seen, self.sensor.place(to)),
             &mut |_| {},
             &mut |effect, notice| recorder.note((start_s, from, to), effect, &notice, events),
         );
@@ -468,7 +468,7 @@ impl<F: Real, P: Rendering<F>, S: Sensor<F>> Device for Watching<F, P, S> {
             recorder.step_s = part.length_s;
             self.retiming.ticks_of(part.length_s);
             self.shown = self.stages.tick_part(
-                &Seen::taken(&seen, self.sensor.place(to)),
+                &ShaftEstimate::taken(&seen, self.sensor.place(to)),
                 (&self.retiming, left == 0, jump_nm),
                 &mut |_| {},
                 &mut |effect, notice| {

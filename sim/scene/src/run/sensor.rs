@@ -2,7 +2,7 @@
 
 use crate::trace::{Column, ColumnKind};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
-use crepitus_model::render::position::{Position, Sight};
+use crepitus_model::render::position::{Position, Sensing};
 use crepitus_model::{Real, SettingsError, ShaftStep};
 use crepitus_plant::chain::Body;
 use crepitus_plant::encoder::Encoder;
@@ -46,7 +46,7 @@ impl<F: Real> Sensor<F> for Ideal {
 
     #[inline]
     fn place(&self, to: &Body) -> Position<F> {
-        Sight::IDEAL.position(to.angle_rad)
+        Sensing::IDEAL.position(to.angle_rad)
     }
 
     fn write(&self, _: &mut Vec<f64>) {}

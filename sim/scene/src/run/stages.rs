@@ -13,7 +13,9 @@ use crepitus_model::render::effects::{
 use crepitus_model::render::input_check::{Checked, InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
 use crepitus_model::render::position::Position;
-use crepitus_model::render::{Addition, Bare, Check, Limits, Pipeline, Seen, Shown, Symptom};
+use crepitus_model::render::{
+    Addition, Bare, Check, Limits, Pipeline, ShaftEstimate, Shown, Symptom,
+};
 use crepitus_model::solver::locate::Locate;
 use crepitus_model::{
     Crepitus, Event, Frozen, Real, Settings, SettingsError, StepCoefficients, StickSlip, Validated,
@@ -225,7 +227,7 @@ pub(super) trait Rendering<F> {
     /// See [`Pipeline::tick_observed`].
     fn tick(
         &mut self,
-        seen: &Seen<F>,
+        seen: &ShaftEstimate<F>,
         on_event: &mut dyn FnMut(Event<F>),
         on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
     ) -> Shown<F>;
@@ -237,7 +239,7 @@ pub(super) trait Rendering<F> {
     /// only are as before. `jump_nm` is what the parts before it had of jumps.
     fn tick_part(
         &mut self,
-        seen: &Seen<F>,
+        seen: &ShaftEstimate<F>,
         part: (&Retiming, bool, F),
         on_event: &mut dyn FnMut(Event<F>),
         on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
@@ -250,7 +252,7 @@ pub(super) trait Rendering<F> {
     fn rest(&mut self, place: &Position<F>);
 
     /// Output of a joint that is seen for the first time, which is no tick.
-    fn begin(&mut self, seen: &Seen<F>, shown: Shown<F>) -> Shown<F>;
+    fn begin(&mut self, seen: &ShaftEstimate<F>, shown: Shown<F>) -> Shown<F>;
 }
 
 impl<F: Real, I, S, E, L> Rendering<F> for Pipeline<F, I, S, E, L>
@@ -262,7 +264,7 @@ where
 {
     fn tick_part(
         &mut self,
-        seen: &Seen<F>,
+        seen: &ShaftEstimate<F>,
         (to, is_last, jump_nm): (&Retiming, bool, F),
         on_event: &mut dyn FnMut(Event<F>),
         on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
@@ -294,7 +296,7 @@ where
     #[inline]
     fn tick(
         &mut self,
-        seen: &Seen<F>,
+        seen: &ShaftEstimate<F>,
         on_event: &mut dyn FnMut(Event<F>),
         on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
     ) -> Shown<F> {
@@ -310,7 +312,7 @@ where
         self.effects.rest(place);
     }
 
-    fn begin(&mut self, seen: &Seen<F>, shown: Shown<F>) -> Shown<F> {
+    fn begin(&mut self, seen: &ShaftEstimate<F>, shown: Shown<F>) -> Shown<F> {
         let mut shown = self.add(seen, &Checked::Missing(1), shown);
         self.effects.add_resting(&seen.place, &mut shown);
         shown

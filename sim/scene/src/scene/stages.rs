@@ -6,7 +6,7 @@ use crate::error::SceneError;
 use crate::scene::Scene;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::effects::{EffectChanges, EffectSettings, Effects, Timing};
-use crepitus_model::render::position::Sight;
+use crepitus_model::render::position::Sensing;
 use crepitus_model::{Real, SettingsError};
 use crepitus_plant::assembly::Listed;
 
@@ -47,15 +47,15 @@ impl Scene {
         Timing {
             step_s,
             delay_ticks,
-            sight: self.sight(),
+            sensing: self.sensing(),
         }
     }
 
     /// Measurement of the joint by its device.
-    pub(crate) fn sight(&self) -> Sight {
+    pub(crate) fn sensing(&self) -> Sensing {
         match &self.encoder {
-            Some(encoder) => Sight::of_encoder(encoder),
-            None => Sight::IDEAL,
+            Some(encoder) => Sensing::of_encoder(encoder),
+            None => Sensing::IDEAL,
         }
     }
 

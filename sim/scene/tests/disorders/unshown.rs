@@ -27,13 +27,13 @@ const TICKS: &str = "[solver]\nkind = \"exact-events\"\nstep_s = 5e-5\nprecision
 
 const REFERENCE: &str = "[solver]\nkind = \"reference\"\n[output]\ntrace_step_s = 5e-5\n";
 
-struct Found {
+struct Unshown {
     names: Vec<&'static str>,
     rows: Vec<Vec<f64>>,
     events: Vec<SymptomEvent>,
 }
 
-impl Observer for Found {
+impl Observer for Unshown {
     type Error = Infallible;
 
     fn row(&mut self, values: &[f64]) -> Result<(), Infallible> {
@@ -47,7 +47,7 @@ impl Observer for Found {
     }
 }
 
-impl Found {
+impl Unshown {
     fn column(&self, name: &str) -> impl Iterator<Item = f64> {
         let place = self.names.iter().position(|n| *n == name);
         let place = place.unwrap_or_else(|| panic!("{name} of {:?}", self.names));
@@ -62,7 +62,7 @@ impl Found {
     }
 }
 
-fn render(parts: &[&str], as_device: bool) -> (Found, Summary) {
+fn render(parts: &[&str], as_device: bool) -> (Unshown, Summary) {
     let text = parts.concat();
     let overrides = Overrides {
         as_device,
@@ -70,7 +70,7 @@ fn render(parts: &[&str], as_device: bool) -> (Found, Summary) {
     };
     let scene = Scene::parse(Path::new("unshown.toml"), &text, &overrides)
         .unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let mut found = Found {
+    let mut found = Unshown {
         names: columns(&scene).iter().map(|c| c.name).collect(),
         rows: Vec::new(),
         events: Vec::new(),
@@ -201,7 +201,7 @@ flexion_torque_nm = 4.0
 
 #[test]
 fn a_sum_beyond_the_devices_largest_torque_is_said_with_and_without_a_device() {
-    let crepitus = |found: &Found| -> Vec<f64> { found.column("torque_nm").collect() };
+    let crepitus = |found: &Unshown| -> Vec<f64> { found.column("torque_nm").collect() };
     let mut first = Vec::new();
     for (solver, as_device) in [(TICKS, false), (REFERENCE, false), (TICKS, true)] {
         let (found, summary) = render(&[STRONG, solver], as_device);

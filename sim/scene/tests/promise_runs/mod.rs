@@ -59,12 +59,12 @@ pub(crate) const WAYS: [Way; 3] = [
 ];
 
 /// A scene that ships.
-pub(crate) fn shipped(way: &Way, name: &str) -> Found {
+pub(crate) fn shipped(way: &Way, name: &str) -> PromiseRun {
     shipped_with(way, name, &[])
 }
 
 /// A scene that ships, with some keys set.
-pub(crate) fn shipped_with(way: &Way, name: &str, set: &[(&str, &str)]) -> Found {
+pub(crate) fn shipped_with(way: &Way, name: &str, set: &[(&str, &str)]) -> PromiseRun {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let file = folder.join(format!("{name}.toml"));
     let text = std::fs::read_to_string(&file).unwrap();
@@ -72,7 +72,7 @@ pub(crate) fn shipped_with(way: &Way, name: &str, set: &[(&str, &str)]) -> Found
 }
 
 /// A scene of this length, of the keys of its motion and the tables of its effects.
-pub(crate) fn of(way: &Way, duration_s: f64, motion_and_effects: &str) -> Found {
+pub(crate) fn of(way: &Way, duration_s: f64, motion_and_effects: &str) -> PromiseRun {
     let text = format!(
         "version = 1\ntitle = \"a promise\"\nduration_s = {duration_s:?}\n\
          solver.kind = \"exact-events\"\nsolver.step_s = 5e-5\n[motion]\n{motion_and_effects}\n"
@@ -80,7 +80,7 @@ pub(crate) fn of(way: &Way, duration_s: f64, motion_and_effects: &str) -> Found 
     found(way, Path::new("promise.toml"), &text, &[])
 }
 
-fn found(way: &Way, file: &Path, text: &str, set: &[(&str, &str)]) -> Found {
+fn found(way: &Way, file: &Path, text: &str, set: &[(&str, &str)]) -> PromiseRun {
     let own = |(key, value): &(&str, &str)| ((*key).to_owned(), (*value).to_owned());
     let mut overrides = Overrides {
         solver: way.solver.map(str::to_owned),
@@ -93,9 +93,9 @@ fn found(way: &Way, file: &Path, text: &str, set: &[(&str, &str)]) -> Found {
         .push(("output.trace_step_s".to_owned(), row_s));
     let scene = Scene::parse(file, text, &overrides)
         .unwrap_or_else(|error| panic!("{}: {error}", way.name));
-    let mut found = Found {
+    let mut found = PromiseRun {
         names: columns(&scene).iter().map(|c| c.name).collect(),
-        ..Found::default()
+        ..PromiseRun::default()
     };
     let Ok(_) = run(&scene, &mut found) else {
         panic!("{}: did not run", way.name);
@@ -105,13 +105,13 @@ fn found(way: &Way, file: &Path, text: &str, set: &[(&str, &str)]) -> Found {
 
 /// A run.
 #[derive(Default)]
-pub(crate) struct Found {
+pub(crate) struct PromiseRun {
     names: Vec<&'static str>,
     rows: Vec<Vec<f64>>,
     pub(crate) events: Vec<SymptomEvent>,
 }
 
-impl Observer for Found {
+impl Observer for PromiseRun {
     type Error = Infallible;
 
     fn row(&mut self, values: &[f64]) -> Result<(), Infallible> {
@@ -125,7 +125,7 @@ impl Observer for Found {
     }
 }
 
-impl Found {
+impl PromiseRun {
     fn place(&self, name: &str) -> usize {
         let place = self.names.iter().position(|n| *n == name);
         place.unwrap_or_else(|| panic!("{name} of {:?}", self.names))

@@ -22,7 +22,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 
 /// A transaction that the device acknowledged or stalled.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Seen {
+pub(crate) enum Transaction {
     Setup([u8; 8]),
     Out(u8, Vec<u8>),
     In(u8, Vec<u8>),
@@ -32,7 +32,7 @@ pub(crate) enum Seen {
 /// The cable, with a record of what passes, and with forged answers.
 pub(crate) struct Tap {
     pub(crate) cable: SoftCable,
-    pub(crate) seen: Vec<Seen>,
+    pub(crate) seen: Vec<Transaction>,
     /// Answers to IN transactions of the bulk endpoint, instead of the device's.
     pub(crate) forged: VecDeque<Handshake>,
     /// IN transactions of the notifications' endpoint, answered or not.
@@ -52,7 +52,7 @@ impl UsbWire for Tap {
         assert!(!self.is_suspended, "a transaction on an idle bus");
         let answer = self.cable.setup_transaction(token, request);
         if matches!(answer, Handshake::Ack(_)) {
-            self.seen.push(Seen::Setup(request));
+            self.seen.push(Transaction::Setup(request));
         }
         answer
     }
@@ -61,8 +61,10 @@ impl UsbWire for Tap {
         assert!(!self.is_suspended, "a transaction on an idle bus");
         let answer = self.cable.out_transaction(token, data);
         match answer {
-            Handshake::Ack(_) => self.seen.push(Seen::Out(token.endpoint, data.to_vec())),
-            Handshake::Stall => self.seen.push(Seen::Stall(token.endpoint)),
+            Handshake::Ack(_) => self
+                .seen
+                .push(Transaction::Out(token.endpoint, data.to_vec())),
+            Handshake::Stall => self.seen.push(Transaction::Stall(token.endpoint)),
             _ => {}
         }
         answer
@@ -75,8 +77,10 @@ impl UsbWire for Tap {
         let forged = is_bulk.then(|| self.forged.pop_front()).flatten();
         let answer = forged.unwrap_or_else(|| self.cable.in_transaction(token));
         match answer {
-            Handshake::Ack(packet) => self.seen.push(Seen::In(token.endpoint, packet.to_vec())),
-            Handshake::Stall => self.seen.push(Seen::Stall(token.endpoint)),
+            Handshake::Ack(packet) => self
+                .seen
+                .push(Transaction::In(token.endpoint, packet.to_vec())),
+            Handshake::Stall => self.seen.push(Transaction::Stall(token.endpoint)),
             _ => {}
         }
         answer

@@ -109,7 +109,12 @@ fn a_command_that_is_none_ends_the_import() {
             client.submit_in(BULK_IN, 64, 0);
             bench.until_closed(&mut client);
             assert!(bench.last_event().contains(cause), "{}", bench.last_event());
-            assert!(!bench.tap.seen.contains(&crate::bench::Seen::Stall(2)));
+            assert!(
+                !bench
+                    .tap
+                    .seen
+                    .contains(&crate::bench::Transaction::Stall(2))
+            );
         }
         assert_serves(bench);
     });

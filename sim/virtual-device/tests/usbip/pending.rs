@@ -1,6 +1,6 @@
 //! Several transfers at once: pending, withdrawn, in order, at the speed of the bus.
 
-use crate::bench::{BULK_IN, BULK_OUT, Bench, NOTIFICATIONS, Seen, with_bench};
+use crate::bench::{BULK_IN, BULK_OUT, Bench, NOTIFICATIONS, Transaction, with_bench};
 use crate::client::{Client, Reply, setup};
 use crate::rig::{Echo, Source, pattern_bytes};
 
@@ -166,7 +166,7 @@ fn the_last_packet_of_a_frame_is_not_always_for_the_same_direction() {
             client.submit_in(BULK_IN, 1_024, 0);
         }
         client.submit_out(BULK_OUT, &pattern_bytes(200_000), 0);
-        let is_out = |seen: &Seen| matches!(seen, Seen::Out(1, _));
+        let is_out = |seen: &Transaction| matches!(seen, Transaction::Out(1, _));
         bench.wait(|bench| {
             client.exchange();
             bench.tap.seen.iter().any(is_out).then_some(())

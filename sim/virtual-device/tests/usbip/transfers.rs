@@ -1,6 +1,6 @@
 //! Transfers of every kind, as transactions on the bus.
 
-use crate::bench::{BULK_IN, BULK_OUT, Seen, with_bench};
+use crate::bench::{BULK_IN, BULK_OUT, Transaction, with_bench};
 use crate::client::setup;
 use crate::rig::{Echo, pattern_bytes};
 use crepitus_virtual_device::usb::wire::{Handshake, Packet};
@@ -16,9 +16,9 @@ fn halt(request: u8) -> [u8; 8] {
 }
 
 /// Returns the lengths of the packets to the device.
-fn lengths_out(seen: &[Seen]) -> Vec<usize> {
-    let length = |seen: &Seen| match seen {
-        Seen::Out(1, data) => Some(data.len()),
+fn lengths_out(seen: &[Transaction]) -> Vec<usize> {
+    let length = |seen: &Transaction| match seen {
+        Transaction::Out(1, data) => Some(data.len()),
         _ => None,
     };
     seen.iter().filter_map(length).collect()
@@ -38,14 +38,14 @@ fn line_coding_is_what_was_set() {
         let reply = bench.control(&mut client, setup(0x21, 0x22, 3, 0, 0), &[]);
         assert_eq!((reply.status, reply.actual), (0, 0));
         let expected = [
-            Seen::Setup(setup(0x21, 0x20, 0, 0, 7)),
-            Seen::Out(0, LINE_CODING.to_vec()),
-            Seen::In(0, vec![]),
-            Seen::Setup(setup(0xa1, 0x21, 0, 0, 7)),
-            Seen::In(0, LINE_CODING.to_vec()),
-            Seen::Out(0, vec![]),
-            Seen::Setup(setup(0x21, 0x22, 3, 0, 0)),
-            Seen::In(0, vec![]),
+            Transaction::Setup(setup(0x21, 0x20, 0, 0, 7)),
+            Transaction::Out(0, LINE_CODING.to_vec()),
+            Transaction::In(0, vec![]),
+            Transaction::Setup(setup(0xa1, 0x21, 0, 0, 7)),
+            Transaction::In(0, LINE_CODING.to_vec()),
+            Transaction::Out(0, vec![]),
+            Transaction::Setup(setup(0x21, 0x22, 3, 0, 0)),
+            Transaction::In(0, vec![]),
         ];
         assert_eq!(bench.tap.seen, expected);
     });

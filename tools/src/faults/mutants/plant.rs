@@ -24,7 +24,7 @@ pub const SWITCH: &str = "crate::faults::mutant::is(";
 /// # Errors
 /// If it is no source.
 pub fn plant(source: &str, mutants: &[(u32, &Mutant)]) -> syn::Result<(String, Vec<u32>)> {
-    let mut found = Found {
+    let mut found = MutantPlaces {
         lines: Lines::of(source),
         mutants: HashMap::new(),
         edits: Vec::new(),
@@ -120,14 +120,14 @@ impl<'a> Lines<'a> {
 }
 
 /// Looks for the places of mutants.
-struct Found<'a> {
+struct MutantPlaces<'a> {
     lines: Lines<'a>,
     mutants: HashMap<(Genre, Place), Vec<Switched>>,
     edits: Vec<Edit>,
     placed: Vec<u32>,
 }
 
-impl Found<'_> {
+impl MutantPlaces<'_> {
     fn take(&mut self, genre: Genre, at: LineColumn) -> Vec<Switched> {
         let place = Place {
             line: at.line,
@@ -165,7 +165,7 @@ impl Found<'_> {
 }
 
 /// Constants, types and patterns are left alone: there nothing can be switched.
-impl<'ast> Visit<'ast> for Found<'_> {
+impl<'ast> Visit<'ast> for MutantPlaces<'_> {
     fn visit_item_const(&mut self, _: &'ast syn::ItemConst) {}
     fn visit_item_static(&mut self, _: &'ast syn::ItemStatic) {}
     fn visit_impl_item_const(&mut self, _: &'ast syn::ImplItemConst) {}

@@ -1,6 +1,6 @@
 //! Loops that gated interrupts reach, against the bounds of the budget.
 
-use super::found::{Found, Loops};
+use super::findings::{Findings, Loops};
 use super::{Gate, finding};
 use crate::image::budget::BoundedLoops;
 use crate::image::report::{Finding, LoopRow};
@@ -8,10 +8,10 @@ use std::collections::BTreeSet;
 
 impl Gate<'_> {
     /// Compares the loops found with the bounds of the budget.
-    pub(super) fn check_bounds(&self, found: &mut Found<'_>) {
+    pub(super) fn check_bounds(&self, found: &mut Findings<'_>) {
         let catalogue = std::mem::take(&mut found.loops);
         for (function, loops) in &catalogue {
-            let entry = self.vouched.loops(function);
+            let entry = self.allowances.loops(function);
             let count = loops.spots.len();
             for (n, copies) in loops.spots.values().enumerate() {
                 found.report.loops.push(LoopRow {
@@ -71,8 +71,8 @@ impl Gate<'_> {
 
     /// Functions that still exist, but without any loop: the compiler may emit
     /// loops again as soon as something around them changes.
-    pub(super) fn note_dissolved(&self, reached: &BTreeSet<u32>, found: &mut Found<'_>) {
-        let without = self.vouched.without_loops();
+    pub(super) fn note_dissolved(&self, reached: &BTreeSet<u32>, found: &mut Findings<'_>) {
+        let without = self.allowances.without_loops();
         if without.is_empty() {
             return;
         }
@@ -87,7 +87,7 @@ impl Gate<'_> {
         }
         for entry in without {
             if names.iter().any(|name| entry.is_for(name)) {
-                self.vouched.keep(entry);
+                self.allowances.keep(entry);
                 found.report.hints.push(dissolved(entry, 0));
             }
         }

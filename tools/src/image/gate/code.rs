@@ -1,8 +1,8 @@
 //! Code that gated interrupts must not reach.
 
-use super::found::Found;
+use super::allowances::unknown_calls;
+use super::findings::Findings;
 use super::layout::Root;
-use super::vouched::unknown_calls;
 use super::{Gate, finding};
 use crate::image::body::{Leave, Step, Target};
 use crate::image::decode::{Flow, Stack};
@@ -15,13 +15,13 @@ use std::collections::BTreeSet;
 impl Gate<'_> {
     /// Everything that a function reaches, up to panics.
     pub(super) fn reach(&self, root: u32) -> Reach {
-        let vouched = |function: &Function| self.vouched.targets(function);
-        let ends = |function: &Function| panics(function) || self.vouched.ends(function);
-        Reach::new(self.program, root, &vouched, &ends)
+        let allowances = |function: &Function| self.allowances.targets(function);
+        let ends = |function: &Function| panics(function) || self.allowances.ends(function);
+        Reach::new(self.program, root, &allowances, &ends)
     }
 
     pub(super) fn check_code(&self, roots: &[Root<'_>], report: &mut Report) {
-        let mut found = Found::new(report);
+        let mut found = Findings::new(report);
         let mut reached = BTreeSet::new();
         for root in roots.iter().filter(|root| root.interrupt.gated) {
             let reach = self.reach(root.function);
@@ -29,7 +29,8 @@ impl Gate<'_> {
                 let Some(function) = self.program.functions.get(&address) else {
                     continue;
                 };
-                if address == root.function || !panics(function) && !self.vouched.ends(function) {
+                if address == root.function || !panics(function) && !self.allowances.ends(function)
+                {
                     self.check_function(root, &reach, function, &mut found);
                     reached.insert(address);
                 }
@@ -40,8 +41,8 @@ impl Gate<'_> {
         self.check_bounds(&mut found);
         self.note_dissolved(&reached, &mut found);
         self.check_ends(&mut found);
-        found.report.failures.extend(self.vouched.stale());
-        found.report.shared_loops = self.vouched.shared_loops();
+        found.report.failures.extend(self.allowances.stale());
+        found.report.shared_loops = self.allowances.shared_loops();
     }
 
     fn check_function(
@@ -49,7 +50,7 @@ impl Gate<'_> {
         root: &Root<'_>,
         reach: &Reach,
         function: &Function,
-        found: &mut Found<'_>,
+        found: &mut Findings<'_>,
     ) {
         let handler = &root.interrupt.handler;
         let path = |site: u32| self.path(reach, function, site);
@@ -83,12 +84,12 @@ impl Gate<'_> {
         handler: &str,
         function: &Function,
         path: &dyn Fn(u32) -> Vec<String>,
-        found: &mut Found<'_>,
+        found: &mut Findings<'_>,
     ) {
-        let allowed = self.vouched.targets(function).len();
+        let allowed = self.allowances.targets(function).len();
         let count = unknown_calls(function);
         if count > 0
-            && let Some(entry) = self.vouched.indirect(function)
+            && let Some(entry) = self.allowances.indirect(function)
             && entry.calls == count
             && allowed > 0
         {
@@ -128,14 +129,14 @@ impl Gate<'_> {
         handler: &str,
         function: &Function,
         path: &dyn Fn(u32) -> Vec<String>,
-        found: &mut Found<'_>,
+        found: &mut Findings<'_>,
     ) {
         let frame = self.program.frames.get(&function.address);
         let Some(&site) = frame.and_then(|frame| frame.dynamic.first()) else {
             return;
         };
         let computed = function.body.live().any(|s| s.it.stack == Stack::Dynamic);
-        if computed && self.vouched.dynamic(function).is_some() {
+        if computed && self.allowances.dynamic(function).is_some() {
             return;
         }
         let name = function.name();
@@ -155,9 +156,10 @@ impl Gate<'_> {
     }
 
     /// A function listed in `ends` must not return.
-    fn check_ends(&self, found: &mut Found<'_>) {
+    fn check_ends(&self, found: &mut Findings<'_>) {
         for function in self.program.functions.values() {
-            if self.vouched.ends(function) && self.program.returning.contains(&function.address) {
+            if self.allowances.ends(function) && self.program.returning.contains(&function.address)
+            {
                 found.report.failures.push(finding(
                     "budget",
                     format!("{} is listed in `ends`, but can return", function.name()),
@@ -168,9 +170,9 @@ impl Gate<'_> {
         }
     }
 
-    fn check_recursion(&self, root: &Root<'_>, reach: &Reach, found: &mut Found<'_>) {
-        let vouched = |function: &Function| self.vouched.targets(function);
-        for circle in reach.recursion(self.program, &vouched) {
+    fn check_recursion(&self, root: &Root<'_>, reach: &Reach, found: &mut Findings<'_>) {
+        let allowances = |function: &Function| self.allowances.targets(function);
+        for circle in reach.recursion(self.program, &allowances) {
             let first = circle.first().copied().unwrap_or_default();
             let what = || {
                 finding(

@@ -8,7 +8,7 @@
 //! and changes of inlining, and a new loop is a new one. Without debug
 //! information it is the symbol and the address.
 
-use super::found::{Copies, Found, Spot};
+use super::findings::{Copies, Findings, Spot};
 use super::layout::Root;
 use super::{Gate, finding};
 use crate::image::lines::Frame;
@@ -34,7 +34,7 @@ impl Gate<'_> {
         root: &Root<'_>,
         function: &Function,
         path: &dyn Fn(u32) -> Vec<String>,
-        found: &mut Found<'_>,
+        found: &mut Findings<'_>,
     ) {
         let handler = &root.interrupt.handler;
         for l in &function.loops {

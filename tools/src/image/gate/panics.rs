@@ -1,7 +1,7 @@
 //! Calls of panics: none in this repository's code, and in a library's no more
 //! than the budget allows.
 
-use super::found::Found;
+use super::findings::Findings;
 use super::{Gate, finding};
 use crate::image::program::Function;
 use crate::image::report::PanicRow;
@@ -15,11 +15,11 @@ impl Gate<'_> {
         panic: &Function,
         site: u32,
         path: &dyn Fn(u32) -> Vec<String>,
-        found: &mut Found<'_>,
+        found: &mut Findings<'_>,
     ) {
         let library = self.lines.library(site);
         if let Some(library) = &library
-            && self.vouched.panics(library)
+            && self.allowances.panics(library)
         {
             if found.is_new("panic", site, 0) {
                 let place = format!("{}, to {}", self.place(site), panic.name());
@@ -46,7 +46,7 @@ impl Gate<'_> {
     }
 
     /// Compares the calls of panics with what is allowed.
-    pub(super) fn check_panics(&self, found: &mut Found<'_>) {
+    pub(super) fn check_panics(&self, found: &mut Findings<'_>) {
         for entry in &self.budget.panics {
             let library = &entry.library;
             // Without any, the entry is stale.

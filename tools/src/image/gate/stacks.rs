@@ -18,7 +18,7 @@ impl Gate<'_> {
         let reset = self.vectors.reset();
         let extra = |address: u32| {
             let function = self.program.functions.get(&address);
-            let mut extra = function.map_or_else(Extra::default, |f| self.vouched.extra(f));
+            let mut extra = function.map_or_else(Extra::default, |f| self.allowances.extra(f));
             if address == reset {
                 // It may set the stack pointer to its present value.
                 extra.dynamic = extra.dynamic.or(Some(0));

@@ -8,9 +8,9 @@ use std::fmt::Write;
 /// Whether it is as it should be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// Found as it should be.
+    /// HangingFit as it should be.
     Good,
-    /// Found not as it should be, which the exit code reports.
+    /// HangingFit not as it should be, which the exit code reports.
     Bad,
     /// The step could not tell.
     Unknown,

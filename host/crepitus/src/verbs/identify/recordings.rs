@@ -21,7 +21,7 @@ pub(super) fn read(files: &[PathBuf]) -> Result<Vec<Recording>, Failure> {
 fn one(path: &Path, progress: &mut Progress) -> Result<Recording, Failure> {
     let file = File::open(path, Damage::Refuse).map_err(Failure::input)?;
     let settings = settings(&file, path)?;
-    let total = file.books().totals.received.max(1);
+    let total = file.accounting().totals.received.max(1);
     let mut samples = Vec::new();
     for row in file.rows().map_err(Failure::input)? {
         let row = row.map_err(Failure::input)?;

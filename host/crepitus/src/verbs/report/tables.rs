@@ -4,14 +4,18 @@ use crate::sections::{counts, section, torque_section};
 use crepitus_pages::plot::number::{count, rounded};
 use crepitus_pages::recorded::RecordingSummary;
 use crepitus_pages::report::Section;
-use crepitus_recording::{Books, Controller, ParameterSet, seconds};
+use crepitus_recording::{Controller, ParameterSet, SampleAccounting, seconds};
 use serde_json::Value;
 
 /// Gaps that are shown.
 const SHOWN_GAPS: usize = 20;
 
 /// `changed_at_s`: when each parameter set took effect.
-pub(super) fn sections(s: &RecordingSummary, books: &Books, changed_at_s: &[f64]) -> Vec<Section> {
+pub(super) fn sections(
+    s: &RecordingSummary,
+    books: &SampleAccounting,
+    changed_at_s: &[f64],
+) -> Vec<Section> {
     let mut sections: Vec<_> = missing(books).into_iter().collect();
     sections.push(recording(s));
     sections.extend(
@@ -61,7 +65,7 @@ pub(super) fn first_sentences(s: &RecordingSummary) -> String {
 }
 
 /// Missing samples come first.
-fn missing(books: &Books) -> Option<Section> {
+fn missing(books: &SampleAccounting) -> Option<Section> {
     let rows = books.gaps.iter().take(SHOWN_GAPS).map(|gap| {
         let (samples, cause) = (gap.samples, gap.cause.text());
         (

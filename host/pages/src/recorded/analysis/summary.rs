@@ -152,7 +152,7 @@ impl Tally {
         recording: &Recording,
         differences: Vec<String>,
     ) -> RecordingSummary {
-        let (metadata, books) = (recording.metadata(), recording.books());
+        let (metadata, books) = (recording.metadata(), recording.accounting());
         let mut warnings = recording.warnings();
         warnings.extend(
             differences

@@ -4,7 +4,7 @@
 use crate::plot::number::rounded;
 use crate::plot::palette::{AXIS, ENCODER, Ink};
 use crate::plot::{Mark, Point};
-use crate::report::symptoms::found::Met;
+use crate::report::symptoms::occurrences::Met;
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::clasp_knife::ClaspKnifeSettings;
 use crepitus_model::render::effects::clonus::ClonusSettings;

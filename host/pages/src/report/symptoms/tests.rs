@@ -1,7 +1,7 @@
 //! Symptoms as their scenes run: what is found, what is drawn, how much is kept.
 
-use super::found::{Found, Met};
 use super::limits;
+use super::occurrences::{Met, Occurrences};
 use super::path::Path;
 use super::timeline::Timeline;
 use super::words::Words;
@@ -159,7 +159,7 @@ fn a_collapse_an_end_and_beats_are_found() {
     near(end.most_nm, 4.0, 1e-6);
 
     let (_, symptoms) = examined(6, STEPPED);
-    let Found { beats, bouts, .. } = &symptoms.list[0].found;
+    let Occurrences { beats, bouts, .. } = &symptoms.list[0].found;
     assert_eq!(
         (bouts.len(), bouts[0].beats, bouts[0].end.map(|end| end.0)),
         (1, 8, Some(Word::Done))
@@ -412,19 +412,19 @@ fn memory_does_not_grow_with_the_run() {
         assert!(line.stored() <= Timeline::LINE);
         assert!(stays.len() <= Timeline::MOST && events.len() <= Timeline::MOST);
         assert!(symptom.path.stored() <= Path::CAPACITY + 2002);
-        let Found {
+        let Occurrences {
             met,
             bouts,
             beats,
             movement,
             ..
         } = &symptom.found;
-        assert!(met.len() <= Found::MOST && bouts.len() <= Found::MOST);
-        assert!(beats.len() <= Found::MOST && movement.rates.len() <= 2);
+        assert!(met.len() <= Occurrences::MOST && bouts.len() <= Occurrences::MOST);
+        assert!(beats.len() <= Occurrences::MOST && movement.rates.len() <= 2);
     }
     let of = |effect| found.list.iter().find(|s| s.words.effect() == effect);
     let clonus = of("clonus").expect("it is there");
-    assert_eq!(clonus.found.beats.len(), Found::MOST);
+    assert_eq!(clonus.found.beats.len(), Occurrences::MOST);
     assert!(clonus.found.left_out > 500_000);
     let together = found.together.expect("seven");
     assert!(together.line.stored() <= Timeline::LINE);

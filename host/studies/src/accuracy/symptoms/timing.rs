@@ -10,7 +10,7 @@ use crate::symptoms::Given;
 use crate::symptoms::follow::{tick, timing};
 use crate::watcher::{Cancelled, StudyError};
 use crepitus_model::render::effects::{DeviceEffect, LawVisitor};
-use crepitus_model::render::position::{Position, Scale, Sight};
+use crepitus_model::render::position::{Position, Scale, Sensing};
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Real, SettingsError, ShaftStep};
 use crepitus_scene::cpu_time;
@@ -157,7 +157,7 @@ impl Steps {
         while timed < LEAST_STEPS.max(length) && length > 0 {
             let visitor = Timed {
                 steps,
-                from: Sight::IDEAL.position(self.from_rad),
+                from: Sensing::IDEAL.position(self.from_rad),
                 scale: timing.scale()?,
                 reading: self.reading,
             };
@@ -177,7 +177,7 @@ fn prepared<F: Real>(
     let mut chunk = Vec::new();
     let most = usize::try_from(most).unwrap_or(usize::MAX);
     sampling.walk_from(start).fill_with_angles(&mut chunk, most);
-    let place = |(angle_rad, step)| (step, Sight::IDEAL.position(angle_rad));
+    let place = |(angle_rad, step)| (step, Sensing::IDEAL.position(angle_rad));
     chunk.into_iter().map(place).collect()
 }
 

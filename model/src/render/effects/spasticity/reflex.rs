@@ -46,7 +46,7 @@ impl<F: Real> ReflexCoefficients<F> {
         threshold: Threshold<F>,
         timing: &Timing,
     ) -> Result<Self, SettingsError> {
-        let lag_s = (s.delay_s - timing.sight.velocity_lag_s).max(0.0);
+        let lag_s = (s.delay_s - timing.sensing.velocity_lag_s).max(0.0);
         let ticks = lag_s / timing.step_s;
         // What is a whole number of ticks but for rounding is one.
         let whole = libm::floor(ticks + 1e-9);

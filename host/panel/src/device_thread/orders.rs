@@ -1,6 +1,6 @@
 //! Orders of pages: each is checked when its turn comes, not when it was queued.
 
-use super::Keeper;
+use super::DeviceThread;
 use super::torque_end::Cause;
 use crate::control::{Holder, Page};
 use crate::request::{Request, Right};
@@ -15,7 +15,7 @@ use std::time::Duration;
 /// thread busy for less, while it answers.
 const LONGEST_QUEUED: Duration = Duration::from_secs(5);
 
-impl<T: Transport> Keeper<'_, T> {
+impl<T: Transport> DeviceThread<'_, T> {
     /// Executes what pages have ordered: a stop first, also one that comes meanwhile.
     pub(super) fn take_orders(&mut self) {
         let mut waiting = VecDeque::new();

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The allowances, and which of them were needed.
-pub(super) struct Vouched<'a> {
+pub(super) struct Allowances<'a> {
     budget: &'a ImageBudget,
     shared: &'a [BoundedLoops],
     targets: BTreeMap<&'a str, Vec<u32>>,
@@ -17,7 +17,7 @@ pub(super) struct Vouched<'a> {
     used: RefCell<BTreeSet<(&'static str, &'a str)>>,
 }
 
-impl<'a> Vouched<'a> {
+impl<'a> Allowances<'a> {
     pub(super) fn new(
         program: &Program,
         budget: &'a ImageBudget,
@@ -157,7 +157,7 @@ impl<'a> Vouched<'a> {
         let used = self.used.borrow();
         let all = self
             .budget
-            .vouched()
+            .allowances()
             .map(|(kind, function, _)| (kind, function));
         let stale = all.filter(|entry| !used.contains(entry));
         let stale = stale.map(|(kind, function)| {

@@ -1,7 +1,7 @@
 //! The last end of torque: who or what ended it, and when. Every page shows it until the next
 //! arming.
 
-use super::{Keeper, unix_ms};
+use super::{DeviceThread, unix_ms};
 use crate::tokens::Role;
 use crepitus_client::Transport;
 use serde_json::{Value, json};
@@ -71,7 +71,7 @@ impl Torque {
     }
 }
 
-impl<T: Transport> Keeper<'_, T> {
+impl<T: Transport> DeviceThread<'_, T> {
     /// Records why torque ends, if there is any.
     pub(super) fn torque_ends(&mut self, cause: Cause) {
         if matches!(self.torque, Torque::On) {

@@ -133,7 +133,7 @@ pub struct Segment {
 
 /// The books of a recording.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Books {
+pub struct SampleAccounting {
     /// The sums.
     pub totals: Totals,
     /// Segments in order of their rows.
@@ -149,7 +149,7 @@ pub struct Books {
     pub drive_restarts: u32,
 }
 
-impl Books {
+impl SampleAccounting {
     fn gap(&mut self, first_tick: u64, samples: u64, cause: Cause) {
         if samples == 0 {
             return;
@@ -206,7 +206,7 @@ impl Books {
 /// Keeps the books as blocks arrive.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ledger {
-    books: Books,
+    books: SampleAccounting,
     /// Next tick of the current segment.
     next_tick: u64,
     start: Option<u8>,
@@ -358,11 +358,11 @@ impl Ledger {
         }
     }
 
-    pub(crate) fn books(&self) -> &Books {
+    pub(crate) fn accounting(&self) -> &SampleAccounting {
         &self.books
     }
 
-    pub(crate) fn into_books(self) -> Books {
+    pub(crate) fn into_books(self) -> SampleAccounting {
         self.books
     }
 
@@ -402,7 +402,7 @@ mod tests {
         ledger.damaged();
         assert!(ledger.block(&block(72_000_000, 72_000_000, 1)));
         assert!(ledger.block(&block(72_000_040, 72_000_020, 1)));
-        let totals = ledger.books().totals;
+        let totals = ledger.accounting().totals;
         assert_eq!((totals.produced, totals.received), (60, 40));
         assert_eq!((totals.dropped, totals.by_device), (20, 20));
         // What the recorder had is known from then on.

@@ -38,14 +38,14 @@ pub(super) type Catalogue = BTreeMap<String, Loops>;
 pub(super) type Sites = BTreeMap<String, Vec<String>>;
 
 /// Findings so far, each place once however many interrupts reach it.
-pub(super) struct Found<'r> {
+pub(super) struct Findings<'r> {
     pub(super) report: &'r mut Report,
     pub(super) loops: Catalogue,
     pub(super) panics: Sites,
     seen: BTreeSet<(&'static str, u32, usize)>,
 }
 
-impl<'r> Found<'r> {
+impl<'r> Findings<'r> {
     /// Nothing yet.
     pub(super) fn new(report: &'r mut Report) -> Self {
         Self {

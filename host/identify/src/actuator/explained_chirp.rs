@@ -77,14 +77,14 @@ const ROUNDING: f64 = 1e-5;
 
 /// A chirp that a single resonance explains.
 #[derive(Clone, Debug)]
-pub(crate) struct Examined {
+pub(crate) struct ExplainedChirp {
     pub(crate) fit: Fit,
     pub(crate) means: Vec<Mean>,
     /// Peak voltage, V.
     pub(crate) amplitude_v: f64,
 }
 
-impl Examined {
+impl ExplainedChirp {
     /// Fits a chirp and checks the fit. `mass_kg` only serves the text of a refusal.
     pub(crate) fn of(series: &Series, band: Band, mass_kg: Option<f64>) -> Result<Self, Refusal> {
         has_a_noise_band(series, band)?;
@@ -354,7 +354,7 @@ mod tests {
     use super::*;
     use crate::actuator::synthetic::{Added, NOISE, NOMINAL, band, played};
 
-    fn resonance_hz(examined: &Examined) -> f64 {
+    fn resonance_hz(examined: &ExplainedChirp) -> f64 {
         examined.fit.impedance.resonance / TAU
     }
 
@@ -364,13 +364,13 @@ mod tests {
         // 1000 and 500 rows a second.
         for (ticks, to_hz) in [(20, 300.0), (40, 180.0), (20, 350.0)] {
             let series = played(&NOMINAL, to_hz, ticks, NOISE);
-            let found = Examined::of(&series, band(to_hz), None).unwrap();
+            let found = ExplainedChirp::of(&series, band(to_hz), None).unwrap();
             let hz = resonance_hz(&found);
             assert!((hz / 35.0 - 1.0).abs() < 0.01, "{ticks}, {to_hz}: {hz}");
         }
         for (ticks, to_hz) in [(20, 500.0), (40, 500.0), (40, 250.0)] {
             let series = played(&NOMINAL, to_hz, ticks, NOISE);
-            let refusal = Examined::of(&series, band(to_hz), None).unwrap_err();
+            let refusal = ExplainedChirp::of(&series, band(to_hz), None).unwrap_err();
             assert!(matches!(refusal, Refusal::FewRows { .. }), "{refusal}");
             assert!(refusal.to_string().contains("sample faster"), "{refusal}");
         }
@@ -386,7 +386,7 @@ mod tests {
                     ..NOISE
                 };
                 let series = played(&NOMINAL, 500.0, 5, hum);
-                let refusal = Examined::of(&series, band(500.0), None).unwrap_err();
+                let refusal = ExplainedChirp::of(&series, band(500.0), None).unwrap_err();
                 let Refusal::Hum { hz: found_hz, .. } = refusal else {
                     panic!("{hz} Hz, {amperes} A: {refusal}");
                 };
@@ -400,7 +400,7 @@ mod tests {
             ..NOISE
         };
         let series = played(&NOMINAL, 500.0, 5, dead);
-        let refusal = Examined::of(&series, band(500.0), None).unwrap_err();
+        let refusal = ExplainedChirp::of(&series, band(500.0), None).unwrap_err();
         assert!(matches!(refusal, Refusal::Nonlinear { .. }), "{refusal}");
     }
 }

@@ -1,13 +1,13 @@
 //! Books of a recording whose own are lost, from its rows.
 
-use super::{Books, Cause};
+use super::{Cause, SampleAccounting};
 use crate::row::{Row, Step};
 
 /// Counts rows and gaps. By whom samples were dropped is lost: those that are not damaged in the
 /// file count as lost on the way.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowCount {
-    books: Books,
+    books: SampleAccounting,
     before: Option<Row>,
 }
 
@@ -45,7 +45,7 @@ impl RowCount {
         missing
     }
 
-    pub(crate) fn into_books(self) -> Books {
+    pub(crate) fn into_books(self) -> SampleAccounting {
         self.books
     }
 }

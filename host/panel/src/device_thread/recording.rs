@@ -1,6 +1,6 @@
 //! Recordings, while the device is live.
 
-use super::Keeper;
+use super::DeviceThread;
 use crate::shared::Outcome;
 use crepitus_client::Transport;
 use crepitus_files::output::{folder_of, temporary_in};
@@ -54,7 +54,7 @@ pub(super) fn extension() -> &'static str {
     }
 }
 
-impl<T: Transport> Keeper<'_, T> {
+impl<T: Transport> DeviceThread<'_, T> {
     pub(super) fn set_recording(&mut self, running: bool, name: &str) -> Outcome {
         if !running {
             self.end_recording();

@@ -1,11 +1,11 @@
 //! The books, checked by the ticks of the rows.
 
-use super::{Books, Cause, Gap, LISTED_GAPS, Segment};
+use super::{Cause, Gap, LISTED_GAPS, SampleAccounting, Segment};
 
 /// Counts rows and gaps in the ticks alone, to compare them with the books.
 #[derive(Clone, Debug)]
 pub struct Recount<'b> {
-    books: &'b Books,
+    books: &'b SampleAccounting,
     rows: u64,
     next_tick: u64,
     segments: usize,
@@ -18,7 +18,7 @@ pub struct Recount<'b> {
 
 impl<'b> Recount<'b> {
     /// Begins before the first row.
-    pub fn new(books: &'b Books) -> Self {
+    pub fn new(books: &'b SampleAccounting) -> Self {
         Self {
             books,
             rows: 0,
@@ -69,7 +69,7 @@ impl<'b> Recount<'b> {
 
     /// The books of these rows, of which others are damaged.
     #[cfg(feature = "parquet")]
-    pub(crate) fn into_books(mut self) -> Books {
+    pub(crate) fn into_books(mut self) -> SampleAccounting {
         let mut books = self.books.clone();
         let totals = &mut books.totals;
         self.missing(

@@ -5,13 +5,13 @@
 //!
 //! | part | look in |
 //! |---|---|
-//! | torque on and off, connection | `keeper.rs` |
-//! | whether an order is executed, control | `keeper/orders.rs` |
-//! | who ended torque, and when | `keeper/torque_end.rs` |
-//! | parameters and presets | `keeper/knee.rs` |
-//! | lessons | `keeper/lessons.rs` |
-//! | recordings | `keeper/recording.rs` |
-//! | status as a message | `keeper/status.rs` |
+//! | torque on and off, connection | `device_thread.rs` |
+//! | whether an order is executed, control | `device_thread/orders.rs` |
+//! | who ended torque, and when | `device_thread/torque_end.rs` |
+//! | parameters and presets | `device_thread/knee.rs` |
+//! | lessons | `device_thread/lessons.rs` |
+//! | recordings | `device_thread/recording.rs` |
+//! | status as a message | `device_thread/status.rs` |
 
 mod knee;
 mod lessons;
@@ -98,7 +98,7 @@ struct Note {
 }
 
 /// The thread that has the device.
-pub(crate) struct Keeper<'p, T> {
+pub(crate) struct DeviceThread<'p, T> {
     client: Client<T>,
     program: &'p dyn Program<T>,
     shared: Arc<Shared>,
@@ -138,7 +138,7 @@ pub(crate) struct Keeper<'p, T> {
     speed: Speed,
 }
 
-impl<'p, T: Transport> Keeper<'p, T> {
+impl<'p, T: Transport> DeviceThread<'p, T> {
     /// Subscribes to the device.
     ///
     /// # Errors
@@ -154,7 +154,7 @@ impl<'p, T: Transport> Keeper<'p, T> {
         client.subscribe()?;
         let now = Instant::now();
         let speed = Speed::new(client.now());
-        let mut keeper = Self {
+        let mut device_thread = Self {
             client,
             program,
             shared,
@@ -185,11 +185,11 @@ impl<'p, T: Transport> Keeper<'p, T> {
             reconnect_at: now,
             speed,
         };
-        keeper.publish_presets();
-        keeper.publish_parameters();
-        keeper.publish_lesson();
-        keeper.publish_target();
-        Ok(keeper)
+        device_thread.publish_presets();
+        device_thread.publish_parameters();
+        device_thread.publish_lesson();
+        device_thread.publish_target();
+        Ok(device_thread)
     }
 
     /// Runs until the program is asked to end; then disarms, also after a panic, and closes what

@@ -1,6 +1,6 @@
 //! Lessons: a list of knees, one after another.
 
-use super::Keeper;
+use super::DeviceThread;
 use super::knee::HEALTHY;
 use super::recording::extension;
 use crate::lesson::{
@@ -67,7 +67,7 @@ impl Held {
     }
 }
 
-impl<T: Transport> Keeper<'_, T> {
+impl<T: Transport> DeviceThread<'_, T> {
     pub(super) fn begin_lesson(&mut self, what: &LessonBegin) -> Outcome {
         if let Some(held) = &self.lesson
             && !held.session.lesson.ended()

@@ -45,7 +45,7 @@ pub(crate) struct Beat {
 
 /// See the module.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Found {
+pub(crate) struct Occurrences {
     pub(crate) met: Vec<Met>,
     pub(crate) bouts: Vec<Bout>,
     /// Whether a beat shows: not in the torque of several effects together.
@@ -69,7 +69,7 @@ const SAME_NM: f64 = 0.005;
 /// A catch has released when so much of its torque is left.
 const RELEASED: f64 = 0.9;
 
-impl Found {
+impl Occurrences {
     /// Begins with nothing found; a beat of this height counts as felt.
     pub(crate) fn new(beats_are_counted: bool, felt_nm: f64) -> Self {
         Self {

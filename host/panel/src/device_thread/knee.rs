@@ -1,6 +1,6 @@
 //! The knee: presets and parameters. Every change is one commit.
 
-use super::Keeper;
+use super::DeviceThread;
 use crate::hello;
 use crate::request::SavePreset;
 use crate::shared::Outcome;
@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 /// The knee without a disorder.
 pub(super) const HEALTHY: &str = "healthy";
 
-impl<T: Transport> Keeper<'_, T> {
+impl<T: Transport> DeviceThread<'_, T> {
     pub(super) fn apply(&mut self, name: &str, add: bool) -> Outcome {
         self.check_open()?;
         let preset = self.preset_of(name)?;

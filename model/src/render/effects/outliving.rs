@@ -18,7 +18,7 @@ use crate::render::position::{Position, Travel};
 /// fades with the slew limit, and gives way as a spring of stiffness S where the hand
 /// moves along with it: it returns at most J²/2S.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kept<F, E> {
+pub struct Outliving<F, E> {
     /// The law, also while it is off: a law may have much to remember, and a commit moves
     /// nothing of it.
     law: E,
@@ -43,7 +43,7 @@ enum Way<F> {
     Leaving(F),
 }
 
-impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
+impl<F: Real, E: Law<Real = F>> Switched<F, E> for Outliving<F, E> {
     fn new(slew_nm: F) -> Self {
         Self {
             law: E::new(E::Coefficients::default()),
@@ -97,7 +97,7 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Kept<F, E> {
     }
 }
 
-impl<F: Real, E: Law<Real = F>> Kept<F, E> {
+impl<F: Real, E: Law<Real = F>> Outliving<F, E> {
     /// Follows a sample while the motor is driven; returns the torque, N·m. Not inlined: a
     /// symptom that is off then costs one test, and no saved registers.
     #[inline(never)]

@@ -3,8 +3,8 @@
 use crate::plot::number::{count, fixed, rounded};
 use crate::plot::page::Section;
 use crate::report::collector::Figures;
-use crate::report::symptoms::found::{Bout, Found, Met};
 use crate::report::symptoms::movement::Movement;
+use crate::report::symptoms::occurrences::{Bout, Met, Occurrences};
 use crate::report::symptoms::{Symptom, Symptoms};
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::clonus::ClonusSettings;
@@ -94,7 +94,7 @@ fn torque(nm: f64) -> String {
     format!("{} N·m", fixed(nm.abs(), 2))
 }
 
-fn ends(found: &Found, rows: &mut Vec<Row>) {
+fn ends(found: &Occurrences, rows: &mut Vec<Row>) {
     for (name, is_flexion) in [
         ("end met in extension", false),
         ("end met in flexion", true),
@@ -135,7 +135,7 @@ fn pressed(met: &Met) -> String {
     format!("{} within {within}{on}", torque(met.most_nm))
 }
 
-fn catches(found: &Found, settings: &EffectSettings, rows: &mut Vec<Row>) {
+fn catches(found: &Occurrences, settings: &EffectSettings, rows: &mut Vec<Row>) {
     let caught: Vec<&Met> = found.caught().collect();
     for (n, met) in (1..).zip(caught.iter().take(MOST)) {
         let event = &met.event;
@@ -167,7 +167,7 @@ fn catches(found: &Found, settings: &EffectSettings, rows: &mut Vec<Row>) {
     }
 }
 
-fn collapses(found: &Found, rows: &mut Vec<Row>) {
+fn collapses(found: &Occurrences, rows: &mut Vec<Row>) {
     for (n, met) in (1..).zip(found.met.iter().take(MOST)) {
         let event = &met.event;
         let at = angle(event.angle_rad);
@@ -192,7 +192,7 @@ fn collapses(found: &Found, rows: &mut Vec<Row>) {
     }
 }
 
-fn beats(found: &Found, settings: Option<&ClonusSettings>, rows: &mut Vec<Row>) {
+fn beats(found: &Occurrences, settings: Option<&ClonusSettings>, rows: &mut Vec<Row>) {
     for (n, bout) in (1..).zip(found.bouts.iter().take(MOST)) {
         let event = &bout.start;
         let stretch = format!("{} at {}", angle(event.angle_rad), speed(event.omega_rad_s));

@@ -1,6 +1,6 @@
 //! The device's state as a message.
 
-use super::Keeper;
+use super::DeviceThread;
 use crepitus_client::Transport;
 use crepitus_protocol::host::Status;
 use serde_json::{Value, json};
@@ -36,7 +36,7 @@ impl Speed {
     }
 }
 
-impl<T: Transport> Keeper<'_, T> {
+impl<T: Transport> DeviceThread<'_, T> {
     pub(super) fn publish_status(&mut self) {
         self.status_is_due = false;
         self.status_at = Instant::now();

@@ -1,4 +1,4 @@
-use super::{Keeper, Program};
+use super::{DeviceThread, Program};
 use crate::control::{Holder, Page};
 use crate::request::Request as FromPage;
 use crate::shared::{Outcome, Shared};
@@ -111,8 +111,8 @@ impl Program<Flood> for Alone {
     }
 }
 
-/// A keeper of a simulated device, to which nobody gives orders.
-fn keeper(program: &Alone) -> Keeper<'_, Flood> {
+/// A device_thread of a simulated device, to which nobody gives orders.
+fn device_thread(program: &Alone) -> DeviceThread<'_, Flood> {
     let scene =
         shipped::scene(Path::new("passive-examination"), &Overrides::default()).expect("a scene");
     let flood = Flood {
@@ -128,40 +128,46 @@ fn keeper(program: &Alone) -> Keeper<'_, Flood> {
     let (questions, _) = mpsc::channel();
     let tokens = Tokens::draw().expect("a secret");
     let shared = Arc::new(Shared::new(tokens, Value::Null, orders, questions));
-    Keeper::new(client, program, shared, inbox, None).expect("it answers")
+    DeviceThread::new(client, program, shared, inbox, None).expect("it answers")
 }
 
-/// Torque ends with what the keeper sends, not with the lease.
+/// Torque ends with what the device thread sends, not with the lease.
 #[test]
 fn a_panic_disarms_first() {
     let program = Alone { panics: true };
-    let mut keeper = keeper(&program);
-    keeper.client.zero().expect("a zero");
-    keeper.client.arm().expect("armed");
-    let disarms = keeper.client.transport_mut().disarms.clone();
-    assert!(catch_unwind(AssertUnwindSafe(|| keeper.run())).is_err());
+    let mut device_thread = device_thread(&program);
+    device_thread.client.zero().expect("a zero");
+    device_thread.client.arm().expect("armed");
+    let disarms = device_thread.client.transport_mut().disarms.clone();
+    assert!(catch_unwind(AssertUnwindSafe(|| device_thread.run())).is_err());
     assert_eq!(disarms.load(Ordering::Relaxed), 1);
 }
 
 #[test]
 fn pages_have_their_turn_while_samples_come_faster_than_they_are_taken() {
     let program = Alone::default();
-    let mut keeper = keeper(&program);
+    let mut device_thread = device_thread(&program);
     for _ in 0..100 {
-        keeper.client.transport_mut().received = Some(0);
-        keeper.step();
+        device_thread.client.transport_mut().received = Some(0);
+        device_thread.step();
     }
-    assert!(keeper.now_s > 0.05, "{} s of samples", keeper.now_s);
+    assert!(
+        device_thread.now_s > 0.05,
+        "{} s of samples",
+        device_thread.now_s
+    );
 }
 
 #[test]
 fn a_knee_that_asks_for_more_than_the_device_shows_is_told() {
     let program = Alone::default();
-    let mut keeper = keeper(&program);
-    keeper.apply("healthy", false).expect("a knee");
-    assert_eq!(keeper.message, None);
-    keeper.apply("texture-bone-on-bone", false).expect("a knee");
-    let message = keeper.message.clone().expect("a warning");
+    let mut device_thread = device_thread(&program);
+    device_thread.apply("healthy", false).expect("a knee");
+    assert_eq!(device_thread.message, None);
+    device_thread
+        .apply("texture-bone-on-bone", false)
+        .expect("a knee");
+    let message = device_thread.message.clone().expect("a warning");
     assert!(
         message.contains("the symptoms can ask for 5.1 N·m together"),
         "{message}"
@@ -176,9 +182,9 @@ fn order(shared: &Shared, page: Page, request: FromPage) -> Receiver<Outcome> {
 }
 
 /// Has a request executed.
-fn done(keeper: &mut Keeper<'_, Flood>, page: Page, request: FromPage) -> Outcome {
-    let mut outcome = order(&keeper.shared, page, request);
-    keeper.take_orders();
+fn done(device_thread: &mut DeviceThread<'_, Flood>, page: Page, request: FromPage) -> Outcome {
+    let mut outcome = order(&device_thread.shared, page, request);
+    device_thread.take_orders();
     outcome.try_recv().expect("an outcome")
 }
 
@@ -187,18 +193,18 @@ fn done(keeper: &mut Keeper<'_, Flood>, page: Page, request: FromPage) -> Outcom
 #[test]
 fn a_take_over_never_ends_armed() {
     let program = Alone::default();
-    let mut keeper = keeper(&program);
-    let shared = keeper.shared.clone();
+    let mut device_thread = device_thread(&program);
+    let shared = device_thread.shared.clone();
     let pages = [shared.control.page(), shared.control.page()];
-    keeper.client.zero().expect("a zero");
+    device_thread.client.zero().expect("a zero");
     let during = Arc::new(Mutex::new(Vec::new()));
     for round in 0..500 {
         let [old, new] = [pages[round % 2], pages[(round + 1) % 2]];
-        keeper.client.transport_mut().while_disarming = None;
-        done(&mut keeper, old, FromPage::Take).expect("control");
-        done(&mut keeper, old, FromPage::Arm).expect("torque");
+        device_thread.client.transport_mut().while_disarming = None;
+        done(&mut device_thread, old, FromPage::Take).expect("control");
+        done(&mut device_thread, old, FromPage::Arm).expect("torque");
         let (sent, sender) = (during.clone(), shared.clone());
-        keeper.client.transport_mut().while_disarming = Some(Box::new(move || {
+        device_thread.client.transport_mut().while_disarming = Some(Box::new(move || {
             let outcome = order(&sender, old, FromPage::Arm);
             sent.lock().expect("a list").push(outcome);
         }));
@@ -207,9 +213,9 @@ fn a_take_over_never_ends_armed() {
             .collect();
         let mut taken = order(&shared, new, FromPage::Take);
         late.extend((0..round % 4).map(|_| order(&shared, old, FromPage::Arm)));
-        keeper.step();
+        device_thread.step();
         late.push(order(&shared, old, FromPage::Arm));
-        keeper.step();
+        device_thread.step();
         assert_eq!(taken.try_recv(), Ok(Ok(Value::Null)));
         late.append(&mut during.lock().expect("a list"));
         assert!(late.len() > 15, "{} orders in round {round}", late.len());
@@ -217,8 +223,8 @@ fn a_take_over_never_ends_armed() {
             let outcome = outcome.try_recv().expect("an outcome");
             assert!(outcome.unwrap_err().contains("take control first"));
         }
-        assert!(!keeper.client.is_armed(), "armed in round {round}");
-        let state = keeper.client.status().expect("a status").state;
+        assert!(!device_thread.client.is_armed(), "armed in round {round}");
+        let state = device_thread.client.status().expect("a status").state;
         assert_eq!(state, State::Disarmed, "round {round}");
         assert_eq!(shared.control.holder(), Holder::Page(new));
     }
@@ -228,12 +234,12 @@ fn a_take_over_never_ends_armed() {
 #[test]
 fn the_last_of_two_take_overs_does_not_inherit_torque() {
     let program = Alone::default();
-    let mut keeper = keeper(&program);
-    let shared = keeper.shared.clone();
+    let mut device_thread = device_thread(&program);
+    let shared = device_thread.shared.clone();
     let [old, first, second] = [(); 3].map(|()| shared.control.page());
-    keeper.client.zero().expect("a zero");
-    done(&mut keeper, old, FromPage::Take).expect("control");
-    done(&mut keeper, old, FromPage::Arm).expect("torque");
+    device_thread.client.zero().expect("a zero");
+    done(&mut device_thread, old, FromPage::Take).expect("control");
+    done(&mut device_thread, old, FromPage::Arm).expect("torque");
     for request in [
         (first, FromPage::Take),
         (first, FromPage::Arm),
@@ -242,8 +248,8 @@ fn the_last_of_two_take_overs_does_not_inherit_torque() {
     ] {
         drop(order(&shared, request.0, request.1));
     }
-    keeper.step();
-    assert!(!keeper.client.is_armed());
+    device_thread.step();
+    assert!(!device_thread.client.is_armed());
     assert_eq!(shared.control.holder(), Holder::Page(second));
 }
 
@@ -251,12 +257,12 @@ fn the_last_of_two_take_overs_does_not_inherit_torque() {
 #[test]
 fn a_page_that_goes_while_it_takes_control_has_none() {
     let program = Alone::default();
-    let mut keeper = keeper(&program);
-    let shared = keeper.shared.clone();
+    let mut device_thread = device_thread(&program);
+    let shared = device_thread.shared.clone();
     let page = shared.control.page();
     drop(order(&shared, page, FromPage::Take));
     drop(shared.leave(page, Role::Teacher));
-    keeper.step();
+    device_thread.step();
     assert_eq!(shared.control.holder(), Holder::Nobody);
 }
 
@@ -264,11 +270,12 @@ fn a_page_that_goes_while_it_takes_control_has_none() {
 #[test]
 fn an_end_of_torque_says_who_ended_it() {
     let program = Alone::default();
-    let mut keeper = keeper(&program);
-    let shared = keeper.shared.clone();
+    let mut device_thread = device_thread(&program);
+    let shared = device_thread.shared.clone();
     let [page, other] = [shared.control.page(), shared.control.page()];
-    keeper.client.zero().expect("a zero");
-    let cause = |keeper: &Keeper<'_, Flood>| keeper.torque.end()["cause"].clone();
+    device_thread.client.zero().expect("a zero");
+    let cause =
+        |device_thread: &DeviceThread<'_, Flood>| device_thread.torque.end()["cause"].clone();
     for expected in [
         "stop-viewer",
         "disarm",
@@ -277,9 +284,9 @@ fn an_end_of_torque_says_who_ended_it() {
         "watchdog",
         "elsewhere",
     ] {
-        done(&mut keeper, page, FromPage::Take).expect("control");
-        done(&mut keeper, page, FromPage::Arm).expect("torque");
-        assert_eq!(cause(&keeper), Value::Null);
+        done(&mut device_thread, page, FromPage::Take).expect("control");
+        done(&mut device_thread, page, FromPage::Arm).expect("torque");
+        assert_eq!(cause(&device_thread), Value::Null);
         match expected {
             "stop-viewer" => {
                 drop(shared.order(FromPage::Stop, other, Role::Viewer));
@@ -292,36 +299,36 @@ fn an_end_of_torque_says_who_ended_it() {
                 std::thread::sleep(crate::watchdog::TIMEOUT + Duration::from_millis(20));
             }
             // As the stop of another program does, of which the client hears afterwards.
-            _ => keeper.client.stop().expect("stopped"),
+            _ => device_thread.client.stop().expect("stopped"),
         }
-        keeper.step();
-        assert_eq!(cause(&keeper), expected);
-        assert!(!keeper.client.is_armed());
+        device_thread.step();
+        assert_eq!(cause(&device_thread), expected);
+        assert!(!device_thread.client.is_armed());
     }
 }
 
-/// STOP is pressed while the device keeps the keeper busy, and other orders wait.
+/// STOP is pressed while the device keeps the device thread busy, and other orders wait.
 #[test]
 fn a_stop_goes_before_what_waits_and_nothing_from_before_it_arms() {
     let program = Alone::default();
-    let mut keeper = keeper(&program);
-    let shared = keeper.shared.clone();
+    let mut device_thread = device_thread(&program);
+    let shared = device_thread.shared.clone();
     let [page, viewer] = [shared.control.page(), shared.control.page()];
-    keeper.client.zero().expect("a zero");
-    done(&mut keeper, page, FromPage::Take).expect("control");
+    device_thread.client.zero().expect("a zero");
+    done(&mut device_thread, page, FromPage::Take).expect("control");
     let stop = || drop(shared.order(FromPage::Stop, viewer, Role::Viewer));
     let mut armed = order(&shared, page, FromPage::Arm);
     stop();
-    keeper.take_orders();
+    device_thread.take_orders();
     let outcome = armed.try_recv().expect("an outcome");
     assert!(outcome.unwrap_err().contains("STOP was pressed"));
-    assert!(!keeper.client.is_armed());
+    assert!(!device_thread.client.is_armed());
     // After a stop a person may arm again.
-    done(&mut keeper, page, FromPage::Arm).expect("torque");
+    done(&mut device_thread, page, FromPage::Arm).expect("torque");
     // With torque the zero would be refused.
     let mut zeroed = order(&shared, page, FromPage::Zero);
     stop();
-    keeper.take_orders();
+    device_thread.take_orders();
     assert_eq!(zeroed.try_recv(), Ok(Ok(Value::Null)));
-    assert!(!keeper.client.is_armed());
+    assert!(!device_thread.client.is_armed());
 }
