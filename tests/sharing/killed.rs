@@ -84,7 +84,7 @@ fn many_programs_are_killed_at_random() {
     assert!(rows > 10_000 && complete > 3);
 }
 
-/// A recording, complete or not, whose books are true.
+/// A recording, complete or not, whose accounting is true.
 fn readable(path: &Path) -> Recording {
     let recording = recording(path);
     support::check_books(&recording);

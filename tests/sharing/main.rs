@@ -34,7 +34,7 @@ fn file(served: &Served, name: &str) -> PathBuf {
     served.home.path().join(name)
 }
 
-/// The books of a recording that ended in order, recounted.
+/// The accounting of a recording that ended in order, recounted.
 fn check_books(file: &Path) -> [u64; 3] {
     let recording = recording(file);
     assert!(recording.is_complete());

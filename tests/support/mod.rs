@@ -130,7 +130,7 @@ pub(crate) fn rows(recording: &Recording) -> Vec<Row> {
     rows.map(|row| row.expect("a row")).collect()
 }
 
-/// The books of a recording, recounted in its rows. The drive has not
+/// The accounting of a recording, recounted in its rows. The drive has not
 /// restarted.
 pub(crate) fn check_books(recording: &Recording) -> Totals {
     let totals = recording.accounting().totals;

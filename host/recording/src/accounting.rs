@@ -131,7 +131,7 @@ pub struct Segment {
     pub start: u8,
 }
 
-/// The books of a recording.
+/// The accounting of a recording.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SampleAccounting {
     /// The sums.
@@ -203,7 +203,7 @@ impl SampleAccounting {
     }
 }
 
-/// Keeps the books as blocks arrive.
+/// Keeps the accounting as blocks arrive.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ledger {
     books: SampleAccounting,

@@ -1,7 +1,7 @@
 //! # Recordings
 //!
 //! Every sample of a device in one file: which device made the samples, its
-//! parameters from which tick on, and the books of what is missing.
+//! parameters from which tick on, and the accounting of what is missing.
 //!
 //! ```text
 //!           while recording              when it has ended
@@ -15,7 +15,7 @@
 //! Whenever the program is killed, the log can be read up to its last whole
 //! frame ([`Recorder`]); the Parquet file takes its place at once or not at all.
 //! [`Recording::open`] reads either, checks every byte of it, counts rows and
-//! gaps and compares them with the books. `docs/recorded.md` is the book on the
+//! gaps and compares them with the accounting. `docs/recorded.md` is the book on the
 //! formats.
 #![forbid(unsafe_code)]
 

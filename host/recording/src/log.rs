@@ -11,7 +11,7 @@
 //! subscribed where the accounting begins, and where it goes on after a lost connection
 //! parameters in force from the next block on: all, or those that have changed
 //! checkpoint every second, and at the end: SHA-256 of the bytes since the last one,
-//!            the number of blocks, the sums of the books
+//!            the number of blocks, the sums of the accounting
 //! ```
 //!
 //! Every byte is covered twice: by the CRC-32 of its frame and, but for what

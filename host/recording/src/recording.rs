@@ -177,7 +177,7 @@ impl Recording {
         &self.metadata
     }
 
-    /// The books, counted in what is readable.
+    /// The accounting, counted in what is readable.
     pub fn accounting(&self) -> &SampleAccounting {
         &self.books
     }

@@ -1,8 +1,8 @@
-//! The books, checked by the ticks of the rows.
+//! The accounting, checked by the ticks of the rows.
 
 use super::{Cause, Gap, LISTED_GAPS, SampleAccounting, Segment};
 
-/// Counts rows and gaps in the ticks alone, to compare them with the books.
+/// Counts rows and gaps in the ticks alone, to compare them with the accounting.
 #[derive(Clone, Debug)]
 pub struct Recount<'b> {
     books: &'b SampleAccounting,
@@ -67,7 +67,7 @@ impl<'b> Recount<'b> {
         }
     }
 
-    /// The books of these rows, of which others are damaged.
+    /// The accounting of these rows, of which others are damaged.
     #[cfg(feature = "parquet")]
     pub(crate) fn into_books(mut self) -> SampleAccounting {
         let mut books = self.books.clone();
@@ -106,7 +106,7 @@ impl<'b> Recount<'b> {
         self.next_tick = segment.first_tick;
     }
 
-    /// Differences from the books, in words; none if they agree.
+    /// Differences from the accounting, in words; none if they agree.
     pub fn differences(mut self) -> Vec<String> {
         while let Some(segment) = self.books.segments.get(self.segments) {
             self.enter(segment);

@@ -16,7 +16,7 @@ use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 
-/// Reads blocks, and keeps books and findings meanwhile.
+/// Reads blocks, and keeps accounting and findings meanwhile.
 #[derive(Debug)]
 pub(crate) struct LogReader<R> {
     input: R,

@@ -85,7 +85,7 @@ impl Reader {
             };
             if seal.first_row > next_row {
                 let of = match books.totals.received {
-                    // Its books are lost.
+                    // Its accounting is lost.
                     0 => String::new(),
                     all => format!(" of {all}"),
                 };

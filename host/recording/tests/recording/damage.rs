@@ -60,7 +60,7 @@ impl Bench {
         said
     }
 
-    /// Does [`Self::check_in_order`], then checks that books and parameters are those of the whole file.
+    /// Does [`Self::check_in_order`], then checks that accounting and parameters are those of the whole file.
     fn check_mended(&self, bytes: &[u8]) -> String {
         let said = self.check_in_order(bytes, self.all.len());
         let whole = open(&self.folder.path().join("whole")).unwrap();
@@ -317,7 +317,7 @@ fn samples_whose_frame_is_missing_are_damaged_in_the_file() {
     assert_eq!((totals.damaged, totals.on_the_way()), (60, 20));
 }
 
-/// Any content of a file: an error, or rows whose books add up.
+/// Any content of a file: an error, or rows whose accounting add up.
 #[test]
 fn no_bytes_are_too_strange() {
     let bench = Bench::new();

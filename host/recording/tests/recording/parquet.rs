@@ -394,7 +394,7 @@ fn a_group_of_another_recording_is_named_and_left_out() {
     );
 }
 
-/// Any content of a file: an error, or rows whose books add up.
+/// Any content of a file: an error, or rows whose accounting add up.
 #[test]
 fn no_bytes_are_too_strange() {
     let bench = Bench::new(2_100);

@@ -199,7 +199,7 @@ pub(crate) fn rows(recording: &Recording) -> Vec<Row> {
     rows
 }
 
-/// The books add up, and are those of the rows.
+/// The accounting add up, and are those of the rows.
 pub(crate) fn check_books(recording: &Recording) {
     let totals = recording.accounting().totals;
     assert_eq!(totals.produced, totals.received + totals.dropped);
