@@ -14,7 +14,7 @@
 //! | [`stack`], [`fault_registers`] | words of the stack's RAM, and registers whose reading has no effect |
 #![allow(unsafe_code)]
 
-use crate::crash_record::{Kept, Ring, empty_ring};
+use crate::crash_record::{CheckedRecord, Ring, empty_ring};
 use crate::enable_line;
 use crate::reset_record;
 use core::mem::MaybeUninit;
@@ -49,7 +49,7 @@ pub(crate) fn store_record_words(words: [u32; reset_record::WORDS]) {
 
 /// The post-mortem record.
 #[unsafe(link_section = ".uninit.crash")]
-pub(crate) static CRASH: Kept = Kept::empty();
+pub(crate) static CRASH: CheckedRecord = CheckedRecord::empty();
 
 /// The last ticks.
 #[unsafe(link_section = ".uninit.ticks")]

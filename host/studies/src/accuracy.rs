@@ -10,7 +10,7 @@
 //!
 //! | to find | look in |
 //! |---|---|
-//! | what is studied | [`scenes`] |
+//! | what is studied, at which steps | [`scenes`], [`steps`] |
 //! | the whole study and its results | [`study`], [`results`] |
 //! | one point of the diagram, and its file | [`point`], [`points_table`] |
 //! | the torque to compare with, at the ends of steps and within them | [`reference_torque`], [`held_torque`] |

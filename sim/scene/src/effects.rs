@@ -47,7 +47,7 @@ impl Start<'_> {
     }
 }
 
-/// Lists the presets that effects may start from.
+/// List of the presets that effects may start from.
 pub(crate) type Starts<'f, 'p> = &'f dyn Fn() -> Vec<Start<'p>>;
 
 /// The effects of a scene: each with those that it needs.

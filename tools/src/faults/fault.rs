@@ -103,7 +103,7 @@ impl Fault {
 }
 
 /// A source with faults in it, each behind a switch: fault `n`, counted from 1,
-/// is in force where `crate::faults::planted::is(n)`.
+/// is in force where `crate::planted::is(n)`.
 ///
 /// # Errors
 /// [`FaultError`] if one does not apply, or two overlap.
@@ -127,7 +127,7 @@ pub fn plant(source: &str, faults: &[(usize, &Fault)]) -> Result<String, FaultEr
             // Writing to a String cannot fail.
             let _ = write!(
                 text,
-                "if crate::faults::planted::is({number}) {{ {} }} else ",
+                "if crate::planted::is({number}) {{ {} }} else ",
                 fault.with
             );
         }
@@ -163,8 +163,8 @@ mod tests {
         let planted = plant("a = x; b = y;", &[(1, &sign), (2, &zero), (3, &other)]).unwrap();
         assert_eq!(
             planted,
-            "a = (if crate::faults::planted::is(1) { -x } else if crate::faults::planted::is(2) { 0 } else { x }); \
-             b = (if crate::faults::planted::is(3) { x } else { y });"
+            "a = (if crate::planted::is(1) { -x } else if crate::planted::is(2) { 0 } else { x }); \
+             b = (if crate::planted::is(3) { x } else { y });"
         );
         for (source, times) in [("b = x;", 0), ("a = x; a = x;", 2)] {
             let error = plant(source, &[(1, &sign)]).unwrap_err();

@@ -362,10 +362,8 @@ mod tests {
 
     #[test]
     fn an_error_names_the_mutants_before_its_place() {
-        let found: Vec<u32> = numbers(
-            "if crate::faults::mutant::is(12) { a } else if crate::faults::mutant::is(7) { b",
-        )
-        .collect();
+        let found: Vec<u32> =
+            numbers("if crate::mutant::is(12) { a } else if crate::mutant::is(7) { b").collect();
         assert_eq!(found, [12, 7]);
         assert_eq!(numbers("nothing here").count(), 0);
     }

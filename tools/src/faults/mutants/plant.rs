@@ -17,7 +17,7 @@ use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
 
 /// The call that asks for a mutant.
-pub const SWITCH: &str = "crate::faults::mutant::is(";
+pub const SWITCH: &str = "crate::mutant::is(";
 
 /// The text with these mutants, by number, and the numbers that have a place in it.
 ///

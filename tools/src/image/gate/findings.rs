@@ -46,7 +46,7 @@ pub(super) struct Findings<'r> {
 }
 
 impl<'r> Findings<'r> {
-    /// Nothing yet.
+    /// Returns an instance without findings.
     pub(super) fn new(report: &'r mut Report) -> Self {
         Self {
             report,
