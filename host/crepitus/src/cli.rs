@@ -258,7 +258,7 @@ mod tests {
                 shown.extend(blocks.flat_map(commands));
             }
         }
-        assert!(shown.len() > 150, "{}", shown.len());
+        assert!(shown.len() > 120, "{}", shown.len());
         let wrong: Vec<_> = (shown.iter())
             .filter_map(|command| Cli::try_parse_from(words(command)).err())
             .map(|error| error.to_string())
