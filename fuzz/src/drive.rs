@@ -247,7 +247,7 @@ impl Bench {
     fn arm(&mut self) {
         let revision = Revision(1);
         self.commit(revision, &Values::default());
-        // It prepares values between its ticks, some of them in each.
+        // The drive prepares values between its ticks, some of them in each.
         for _ in 0..MOST_PREPARING_MS {
             self.heartbeat(5_000);
             self.run(20, &Readings::good());

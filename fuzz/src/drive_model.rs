@@ -336,7 +336,7 @@ impl DriveModel {
                     self.block_of(sample(bytes))
                 }
             }
-            // It has restarted.
+            // The drive has restarted.
             1 => {
                 // Mostly with the next number. The books see five bits of it: one
                 // of long ago would be taken for the same start, so it is not that often.

@@ -123,7 +123,7 @@ fn accepted(scene: &Scene) {
         Err(RunError::Diverged(diverged)) => {
             let may = match diverged {
                 Diverged::Object { .. } => has_limit_of_stability(scene),
-                // It feels the torque a step later, and swings ever more where that is long.
+                // The shaft feels the torque a step later, and swings ever more if that is long.
                 Diverged::Shaft { step_s, .. } => {
                     has_limit_of_stability(scene) || step_s > LONG_STEP_S
                 }

@@ -41,7 +41,7 @@ impl Shaft {
         };
         self.omega_rad_s = step.omega_end_rad_s;
         let times = 1 << (tag >> 5);
-        // The same way again and again, without the rise.
+        // Repeats: the step itself, or its last speed without the rise.
         let again = if tag & 8 == 0 {
             step
         } else {

@@ -37,9 +37,9 @@ const ENDLESS: [usize; 2] = [1, 2];
 enum Use {
     /// Arguments of a command with every kind of file at `{}`; `{ok}` is a recording, `{out}` a new folder.
     Every(&'static str),
-    /// The same of a command that shares its reader with others: with the endless kinds only.
+    /// Arguments of a command that shares its reader with others: with the endless kinds only.
     Endless(&'static str),
-    /// The same of a command that says in its own way what is wrong: it has to end.
+    /// Arguments of a command that says in its own way what is wrong: it has to end.
     Ends(&'static str),
     /// A file or folder that is written; `outputs` has the tests of these.
     Written,

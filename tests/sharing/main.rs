@@ -114,7 +114,7 @@ fn programs_with_different_environments_meet() {
         command.args(device).env("TMPDIR", &temporary);
         command.output().unwrap()
     };
-    // It serves before anybody looks, as it cannot know of the other's folder.
+    // `arm` serves before anybody looks, as it cannot know of the other's folder.
     let mut told = BufReader::new(arm.stderr.take().unwrap()).lines();
     let armed = told.find(|line| line.as_ref().is_ok_and(|line| line.contains("disarms")));
     assert!(armed.is_some(), "it has ended");

@@ -124,7 +124,7 @@ pub(crate) fn recording(file: &Path) -> Recording {
     Recording::open(file, Damage::Refuse).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Its rows.
+/// Rows of a recording.
 pub(crate) fn rows(recording: &Recording) -> Vec<Row> {
     let rows = recording.rows().expect("rows");
     rows.map(|row| row.expect("a row")).collect()

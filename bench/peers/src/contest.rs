@@ -12,10 +12,10 @@ pub const EVENT_LIMIT_S: f64 = 1e-9;
 
 /// A solver with its settings and what was measured of it.
 pub struct Contestant {
-    /// Its description.
+    /// Library, method and setting.
     pub who: Who,
     runner: Runner,
-    /// Its results, by task in the order of [`Task::ALL`]; none where it has no answer.
+    /// Results by task, in the order of [`Task::ALL`]; none where the solver has no answer.
     pub results: [Option<TaskResult>; 3],
 }
 
@@ -24,9 +24,9 @@ pub struct Contestant {
 pub struct Who {
     /// Library and version, or `crepitus`.
     pub library: String,
-    /// Its method.
+    /// Method of the library.
     pub method: String,
-    /// Its setting; none for ours, which have none.
+    /// Setting of the method; none for ours, which have none.
     pub setting: Option<Setting>,
     /// Tasks for which the search found this setting the cheapest good one.
     pub tuned_for: Vec<Task>,
@@ -42,9 +42,9 @@ impl Who {
 /// Result of one task.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct TaskResult {
-    /// Its errors against the closed form.
+    /// Errors against the closed form.
     pub score: Score,
-    /// Its times over all rounds.
+    /// Times over all rounds.
     pub time: Summary,
 }
 

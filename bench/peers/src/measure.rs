@@ -64,7 +64,7 @@ pub fn score(runner: &mut Runner, task: Task, out: &mut Delivery) -> Result<Scor
 pub fn time(runner: &mut Runner, task: Task, out: &mut Delivery, repeats: u32) -> Times {
     let (cpu, wall) = (cpu_s(), Instant::now());
     for _ in 0..repeats {
-        // It did not fail when it was scored, and it does the same again.
+        // The runner did not fail when it was scored, and it does the same again.
         let _ = black_box(runner(black_box(task), out));
         black_box(&mut *out);
     }

@@ -102,7 +102,7 @@ fn synthetic_walk() -> Samples {
     }
 }
 
-/// The same pieces for who integrates: it remembers the piece that it was asked for last.
+/// Pieces of a motion for an integrator: a cursor remembers the piece it was asked for last.
 #[derive(Clone)]
 pub struct Cursor {
     pieces: Rc<[Piece]>,

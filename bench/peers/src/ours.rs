@@ -63,7 +63,7 @@ pub fn reference_events(convention: Convention, hand: &Hand) -> Runner {
     reference_rows(convention, hand, hand.duration_s, 0)
 }
 
-/// The same with the torque at each of `rows` rows, `spacing_s` apart.
+/// `reference` on a moving hand, with the torque at each of `rows` rows, `spacing_s` apart.
 #[expect(clippy::cast_precision_loss, reason = "at most 100,000 rows")]
 pub fn reference_rows(convention: Convention, hand: &Hand, spacing_s: f64, rows: usize) -> Runner {
     let settings = settings(convention);

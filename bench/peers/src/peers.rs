@@ -16,7 +16,7 @@ use crate::work::{Mode, Runner, Work};
 pub struct Peer {
     /// Library and version.
     pub library: &'static str,
-    /// Its method.
+    /// Method of the library.
     pub method: &'static str,
     build: fn(Setting) -> Result<Runner, String>,
 }

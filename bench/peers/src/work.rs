@@ -52,9 +52,9 @@ impl Task {
 /// Mode of the object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// It follows the shaft.
+    /// Motion with the shaft.
     Stick,
-    /// It swings, driven by Tk.
+    /// Swing, driven by Tk.
     Slip,
 }
 

@@ -235,7 +235,7 @@ impl Chain {
         let key = (reply.session.0, reply.number);
         match reply.answer {
             Err(Refusal::NotOpen) => self.host.forget(reply.session),
-            // It may still come into effect.
+            // The request may still come into effect.
             Err(Refusal::Unconfirmed) => {}
             Err(Refusal::Leased { .. }) => self.lease.refused(reply.session, reply.number),
             Err(_) => {

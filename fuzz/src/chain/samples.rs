@@ -19,7 +19,7 @@ const RENDERED: u16 = SampleFlags::PHASE
 #[derive(Clone, Copy)]
 pub(super) struct Produced {
     pub(super) rendered: Rendered,
-    /// Its torque was the motor's setpoint.
+    /// The torque of this tick was the motor's setpoint.
     pub(super) is_energised: bool,
     pub(super) has_current: bool,
 }

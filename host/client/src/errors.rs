@@ -88,9 +88,9 @@ impl From<Mismatch> for Error {
 pub struct Conflict {
     /// The parameter.
     pub id: u8,
-    /// Its value as it was read first.
+    /// Value of the parameter as it was read first.
     pub before: f64,
-    /// Its value now.
+    /// Value of the parameter now.
     pub now: f64,
     /// The requested value.
     pub requested: f64,

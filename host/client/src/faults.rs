@@ -20,7 +20,7 @@ pub fn fault_text(code: u8) -> String {
     )
 }
 
-/// The same of a fault of the vibration actuator's coil.
+/// A coil fault's name, cause, effect and remedy.
 pub fn coil_fault_text(code: u8) -> String {
     CoilFault::find(code).map_or_else(
         || {

@@ -57,7 +57,7 @@ impl Handshake {
 
 /// The schema hashes of host and device differ.
 ///
-/// Its text gives both versions and the one to replace.
+/// The error's text gives both versions and the one to replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mismatch(pub Handshake);
 

@@ -24,7 +24,7 @@ const HANDSHAKE_RETRY: Duration = Duration::from_millis(50);
 pub struct Crash {
     /// Head of the record: how the program ended.
     pub head: Head,
-    /// Its last ticks, the oldest first; of the drive only.
+    /// Last ticks of the program, the oldest first; of the drive only.
     pub ticks: Vec<Tick>,
 }
 

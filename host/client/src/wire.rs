@@ -134,7 +134,7 @@ fn encoded(request: &Request) -> Result<frame::Frame, frame::TooLong> {
 }
 
 impl Inbox {
-    /// It holds `count` bytes now, none of them read.
+    /// Holds `count` bytes from now on, none of them read.
     fn hold(&mut self, count: usize) {
         (self.at, self.end) = (0, count.min(self.bytes.len()));
     }

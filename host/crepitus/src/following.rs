@@ -304,7 +304,7 @@ mod tests {
     #[test]
     fn a_fault_just_before_the_end_is_told() {
         let armed = |time| {
-            // Its leg leaves the range of motion.
+            // The leg of this scene leaves the range of motion.
             let mut client = client_of("high-speed");
             let begun = client.now();
             let end = follow(&mut client, time, Arming::armed(true), &mut Waits);

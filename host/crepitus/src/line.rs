@@ -74,7 +74,7 @@ pub(crate) fn connect(arguments: &DeviceArguments) -> Result<Client<Line>, Failu
     Client::connect(open(arguments)?).map_err(failure)
 }
 
-/// The same as [`open_to_arm`].
+/// Opens the connection like [`open_to_arm`], and performs the handshake.
 pub(crate) fn connect_to_arm(
     arguments: &DeviceArguments,
     arming: Arming,

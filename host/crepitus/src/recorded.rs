@@ -192,7 +192,7 @@ impl Follower for Recorded {
     }
 
     fn resumed(&mut self, begin: Begin) -> Result<(), Failure> {
-        // Its parameters may be others, also with the same revision.
+        // The device's parameters may be others, also with the same revision.
         self.announced = None;
         let begin = crepitus_recording::Begin {
             first_tick: begin.first_tick,
@@ -222,7 +222,7 @@ pub(crate) fn extension() -> &'static str {
 /// that fails, the recording stays as it is. It is an error if its file has been removed or replaced.
 fn in_final_format(file: &Path, id: &str) -> Result<(), Failure> {
     let Some(writer) = parquet_writer() else {
-        // It was written to the end, whatever its name is now.
+        // The recording was written to the end, whatever its name is now.
         return fs::metadata(file)
             .map(|_| ())
             .map_err(|e| lost(&Failure::at(file, "cannot be read", &e).into_text()));

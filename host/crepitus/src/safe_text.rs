@@ -7,7 +7,7 @@ use std::borrow::Cow;
 /// characters.
 const LONGEST: (usize, usize) = (80, 60);
 
-/// The same of paths and of commands to type, of which a part is of no use.
+/// Both lengths of paths and of commands to type, of which a part is of no use.
 const LONGEST_PATH: (usize, usize) = (200, 150);
 
 /// Escapes control characters, except newlines and tabs, and characters that

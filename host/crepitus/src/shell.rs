@@ -6,7 +6,7 @@ use std::path::Path;
 /// A path as one word of a shell's command line.
 pub(crate) fn word(path: &Path) -> String {
     let bytes = path.as_os_str().as_encoded_bytes();
-    // It would be taken for an option.
+    // A path with a leading hyphen would be taken for an option.
     let prefix = if bytes.starts_with(b"-") { "./" } else { "" };
     let is_plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"_./+,:@%=-".contains(byte);
     match path.to_str() {

@@ -6,7 +6,7 @@
 pub struct LookAlike {
     /// The character.
     pub found: char,
-    /// Its name with its code point, such as `U+2212 (minus sign)`.
+    /// Name of the character with its code point, such as `U+2212 (minus sign)`.
     pub name: &'static str,
     /// The character to write.
     pub write: &'static str,

@@ -190,7 +190,7 @@ pub fn read(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, InputError> {
         return Err(InputError::TooLong { limit_bytes });
     }
     let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
-    // It may grow meanwhile, and the length of some systems' own files is 0.
+    // The file may grow meanwhile, and the length of some systems' own files is 0.
     file.take(limit_bytes.saturating_add(1))
         .read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit_bytes {

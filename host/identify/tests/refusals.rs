@@ -35,7 +35,7 @@ fn a_mass_at_its_stops() {
         assert!(matches!(refusal, Refusal::Nonlinear { .. }), "{text}");
         assert!(text.contains("stops (a linear one would swing by ±0."));
     }
-    // It does not come there.
+    // The mass does not come to its stops.
     let free = Simulated {
         stroke_m: 0.4e-3,
         ..NOMINAL
@@ -134,7 +134,7 @@ fn a_current_of_few_milliamperes() {
         let series = truth.played(&weak, &mut fastrand::Rng::with_seed(1));
         identify(&series, band(&weak), &MassEvidence::Weighed(MASS))
     };
-    // Its plateau is one milliampere of the record, not the end of the sensor.
+    // The plateau of this current is one milliampere of the record, not the end of the sensor.
     let refusal = found(0.0).unwrap_err();
     eprintln!("{refusal}");
     assert!(matches!(refusal, Refusal::Weak { .. }), "{refusal}");

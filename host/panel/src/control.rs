@@ -25,7 +25,7 @@ pub(crate) enum Holder {
     Nobody,
     /// This page has it.
     Page(Page),
-    /// It was withdrawn from a page for another one, which gets it when torque is off.
+    /// Control was withdrawn from a page for another one, which gets it when torque is off.
     Passing,
 }
 

@@ -1,6 +1,6 @@
 //! The thread that has the device: the only one that talks to it.
 //!
-//! It executes the orders of pages one after another, makes frames of the samples, and
+//! The thread executes the orders of pages one after another, makes frames of the samples, and
 //! disarms when the watchdog of the controlling page expires.
 //!
 //! | part | look in |

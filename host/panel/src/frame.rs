@@ -141,7 +141,7 @@ mod tests {
         let float = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
         let values: Vec<_> = (0..8).map(|n| float(HEADER + 4 * n)).collect();
         assert_eq!(values, [1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0]);
-        // It sticks: mark 1.
+        // The object sticks: mark 1.
         let rest = [5, 0, 0, 0, 6, 0, 1, 0];
         assert_eq!(bytes[HEADER + 32..HEADER + 40], rest);
     }

@@ -36,9 +36,9 @@ pub struct Settings {
 pub enum Source {
     /// A device.
     Device {
-        /// Its name for people.
+        /// Name of the device for people.
         name: String,
-        /// Its serial number.
+        /// Serial number of the device.
         serial: String,
     },
     /// Recordings only.

@@ -9,7 +9,7 @@ use serde_json::Value;
 pub(crate) enum Message {
     /// The frame of this number is on the screen.
     Seen {
-        /// Its number.
+        /// Number of the frame.
         seen: u32,
     },
     /// A request.
@@ -90,7 +90,7 @@ pub(crate) enum Request {
     },
     /// Put it away.
     LessonClose,
-    /// Its report, in this language.
+    /// Report of the lesson, in this language.
     Report {
         #[serde(default)]
         language: String,

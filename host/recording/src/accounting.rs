@@ -6,7 +6,7 @@
 //! dropped  = by the device + on the way + while not connected + damaged in the file
 //! ```
 //!
-//! It begins at the first tick of the subscription. Each block carries the
+//! The accounting begins at the first tick of the subscription. Each block carries the
 //! number of samples that the device has not sent so far; what is missing
 //! beyond that was lost after it.
 
@@ -27,7 +27,7 @@ const LISTED_GAPS: usize = 1_000;
 /// Start of a subscription.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Begin {
-    /// Its first tick.
+    /// First tick of the subscription.
     pub first_tick: u64,
     /// Samples before it that the device has not sent.
     pub dropped: u32,

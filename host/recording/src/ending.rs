@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum EndCause {
-    /// Its time had elapsed.
+    /// The recording's time had elapsed.
     Time,
     /// The user asked for it.
     Requested,

@@ -43,7 +43,7 @@ pub enum ReadError {
     Format {
         /// The file.
         path: PathBuf,
-        /// Its version.
+        /// Version of the recording.
         found: u32,
     },
     /// This program was built without what reads it.
@@ -291,7 +291,7 @@ impl Recording {
         })
     }
 
-    /// Its samples in order.
+    /// Samples of the recording in order.
     ///
     /// # Errors
     /// [`ReadError::Io`].

@@ -55,7 +55,7 @@ impl Alike for TimedEvent {
     }
 }
 
-/// The same for any events, with those after `interior_s` exempt.
+/// Matches events of any kind like [`match_events`], with those after `interior_s` exempt.
 pub fn match_alike<E: Alike>(truth: &[E], found: &[E], interior_s: f64) -> Matching {
     let gaps = gaps(truth);
     let mut matching = Matching::default();

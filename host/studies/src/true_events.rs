@@ -14,7 +14,7 @@ const EVENTS_PER_POLL: usize = 1 << 12;
 pub struct TimedEvent {
     /// Time since the start of the run, s.
     pub time_s: f64,
-    /// Its kind.
+    /// Kind of the event.
     pub kind: EventKind,
     /// Sense of the slip that begins or ends with it.
     pub sense: Sense,

@@ -86,7 +86,7 @@ pub struct Row {
 pub struct Measured {
     /// Acceleration of the palm in the band, m/s² rms.
     pub acceleration_m_s2: f64,
-    /// Its level above the threshold of perception, dB; that is known to ±10 dB.
+    /// Level of the acceleration above the threshold of perception, dB, known to ±10 dB.
     pub level_db: f64,
     /// Likeness to that on a bare knee whose joint shows this very torque.
     pub likeness: Option<Like>,

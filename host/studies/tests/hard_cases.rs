@@ -103,7 +103,7 @@ fn who_is_expected_to_fail_fails() {
             );
             assert!(overflows, "{} {got}", solver.name());
         }
-        // Its numerical damping ends the effect.
+        // The numerical damping of implicit Euler ends the effect.
         let got = physical("H01", Solver::ImplicitEuler);
         let Verdict::Fails {
             what: Failure::OtherEvents { found, expected },

@@ -14,7 +14,7 @@ const MARKS: [char; 2] = ['«', '»'];
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fault {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub name: String,
     /// Description of the fault, in one line.
     pub what: String,

@@ -41,7 +41,7 @@ impl Program {
 #[derive(Clone, Debug, Deserialize, Hash)]
 #[serde(deny_unknown_fields)]
 pub struct FirmwareFault {
-    /// Its name on the command line.
+    /// Name on the command line.
     pub name: String,
     /// Description of the fault, in one line.
     pub what: String,

@@ -25,7 +25,7 @@ pub struct Mutant {
     pub file: PathBuf,
     /// Place and mutation, for people.
     pub name: String,
-    /// Its kind, in the terms of `cargo mutants`.
+    /// Kind of the mutation, in the terms of `cargo mutants`.
     pub genre: Genre,
     /// The text that replaces what is at `span`.
     pub replacement: String,
@@ -53,7 +53,7 @@ pub enum Genre {
 /// The part of the file that a mutant replaces.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct Span {
-    /// Its beginning.
+    /// Beginning of the part.
     pub start: Place,
 }
 

@@ -26,9 +26,9 @@ pub struct Outcome {
 /// Result of a hard case.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CaseOutcome {
-    /// Its number.
+    /// Number of the case.
     pub id: String,
-    /// Its finding; `None` if it holds.
+    /// Finding of the case; `None` if it holds.
     pub found: Option<String>,
 }
 

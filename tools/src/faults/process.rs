@@ -14,7 +14,7 @@ pub enum End {
     Success,
     /// Another exit code, or a signal.
     Failure,
-    /// It was killed after its timeout.
+    /// The program was killed after its timeout.
     Timeout,
 }
 

@@ -19,7 +19,7 @@ const DECIDES: [&str; 5] = [
     "host/studies",
 ];
 
-/// The same for faults of the firmware.
+/// Folders that the outcome of a fault of the firmware depends on.
 const FIRMWARE_DECIDES: [&str; 8] = [
     "model",
     "protocol",
@@ -76,7 +76,7 @@ pub fn fingerprint(root: &Path) -> io::Result<u64> {
     fingerprint_of(root, &DECIDES)
 }
 
-/// The same for faults of the firmware.
+/// A number that changes with the sources that outcomes of faults of the firmware depend on.
 ///
 /// # Errors
 /// The file system's error.

@@ -47,7 +47,7 @@ pub mod planted {
 /// Reason why a fault could not be tried.
 #[derive(Debug, thiserror::Error)]
 pub enum TrialError {
-    /// It does not apply.
+    /// The fault does not apply.
     #[error(transparent)]
     Fault(#[from] FaultError),
     /// A file or a program failed.

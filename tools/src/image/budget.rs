@@ -145,11 +145,11 @@ pub struct Reserved {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Interrupt {
-    /// Its symbol.
+    /// Symbol of the handler.
     pub handler: String,
-    /// Its number; exceptions below 0.
+    /// Number of the interrupt; exceptions below 0.
     pub irq: i16,
-    /// Its priority: higher preempts lower.
+    /// Priority of the interrupt: higher preempts lower.
     pub priority: u8,
     /// Whether it must be free of panics, unknown calls and unbounded loops.
     #[serde(default = "yes")]

@@ -67,18 +67,18 @@ pub enum Flow {
 pub enum Stack {
     /// No effect.
     Same,
-    /// It goes down: this many more bytes are in use.
+    /// Decrease: this many more bytes are in use.
     Down(u32),
-    /// It goes up again.
+    /// Increase: this many fewer bytes are in use.
     Up(u32),
-    /// It is set to an unknown value.
+    /// Change to an unknown value.
     Dynamic,
 }
 
 /// Way in which an instruction puts a constant into a register.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Constant {
-    /// It does not.
+    /// No constant.
     None,
     /// `movw`: the lower half, and zeros above.
     Low(Register, u16),
@@ -98,19 +98,19 @@ pub enum Constant {
 /// One decoded instruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Instruction {
-    /// Its address.
+    /// Address of the instruction.
     pub address: u32,
-    /// Its length, 2 or 4 bytes.
+    /// Length of the instruction, 2 or 4 bytes.
     pub length: u32,
     /// Flow of control after it.
     pub flow: Flow,
-    /// Its effect on `sp`.
+    /// Effect on `sp`.
     pub stack: Stack,
     /// The constant that it makes.
     pub constant: Constant,
     /// Registers that it may write, a bit each; too many rather than too few.
     pub may_write: u16,
-    /// It is an instruction of the FPU.
+    /// The instruction is one of the FPU.
     pub fpu: bool,
     /// Inside an `it` block: it may as well do nothing.
     pub conditional: bool,

@@ -25,17 +25,17 @@ pub struct Segment {
 /// A section that takes memory while the program runs.
 #[derive(Debug, Clone)]
 pub struct Section {
-    /// Its name.
+    /// Name of the section.
     pub name: String,
-    /// Its address.
+    /// Address of the section.
     pub address: u32,
-    /// Its size in bytes.
+    /// Size of the section in bytes.
     pub size: u32,
-    /// It holds instructions.
+    /// The section holds instructions.
     pub executable: bool,
     /// The program may write to it.
     pub writable: bool,
-    /// Its content in the file; empty for `.bss` and the like.
+    /// Content in the file; empty for `.bss` and the like.
     pub bytes: Vec<u8>,
 }
 
@@ -44,7 +44,7 @@ pub struct Section {
 pub struct Symbol {
     /// Demangled, without hash; several where symbols share an address.
     pub names: Vec<String>,
-    /// Its size in bytes; 0 if the symbol has none.
+    /// Size of the function in bytes; 0 if the symbol has none.
     pub size: u32,
 }
 

@@ -43,11 +43,11 @@ pub struct Gate<'a> {
 pub struct Subject<'a> {
     /// The image.
     pub image: &'a Image,
-    /// Its source lines.
+    /// Source lines of the image.
     pub lines: &'a Lines,
     /// The memories of its linker script.
     pub memory: &'a [Region],
-    /// Its budget.
+    /// Budget of the image.
     pub budget: &'a ImageBudget,
     /// Bounds of loops for all images.
     pub shared_loops: &'a [BoundedLoops],

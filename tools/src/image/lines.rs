@@ -12,7 +12,7 @@ pub struct Lines {
 /// A function at an address, by itself or inlined.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Frame {
-    /// Its name, demangled.
+    /// Name of the function, demangled.
     pub function: String,
     /// The file.
     pub file: String,

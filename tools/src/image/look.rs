@@ -15,9 +15,9 @@ use std::fmt::Write;
 /// One root.
 #[derive(Debug, Clone, Serialize)]
 pub struct Look {
-    /// Its name.
+    /// Name of the root.
     pub root: String,
-    /// Its worst stack, in bytes.
+    /// Worst stack of the root, in bytes.
     pub stack: u32,
     /// That is a lower bound only.
     pub at_least: bool,
@@ -30,13 +30,13 @@ pub struct Look {
 /// One function.
 #[derive(Debug, Clone, Serialize)]
 pub struct Row {
-    /// Its name.
+    /// Name of the function.
     pub name: String,
-    /// Its address.
+    /// Address of the function.
     pub address: u32,
     /// Instructions that its entry reaches.
     pub instructions: usize,
-    /// Its own use of the stack, in bytes.
+    /// The function's own use of the stack, in bytes.
     pub frame: u32,
     /// Number of its loops.
     pub loops: usize,

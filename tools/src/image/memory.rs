@@ -10,11 +10,11 @@ use crate::image::error::ImageError;
 /// A memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Region {
-    /// Its name.
+    /// Name of the memory.
     pub name: String,
-    /// Its first address.
+    /// First address of the memory.
     pub origin: u32,
-    /// Its size in bytes.
+    /// Size of the memory in bytes.
     pub length: u32,
 }
 

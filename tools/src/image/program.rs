@@ -11,13 +11,13 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A function.
 #[derive(Debug, Clone)]
 pub struct Function {
-    /// Its address.
+    /// Address of the function.
     pub address: u32,
-    /// Its names.
+    /// Names of the function.
     pub names: Vec<String>,
-    /// Its control flow; nothing follows a call that never returns.
+    /// Control flow; nothing follows a call that never returns.
     pub body: Body,
-    /// Its loops.
+    /// Loops of the function.
     pub loops: Vec<Loop>,
 }
 

@@ -93,9 +93,9 @@ pub struct Level {
 pub struct InterruptRow {
     /// The handler's symbol.
     pub handler: String,
-    /// Its number.
+    /// Number of the interrupt.
     pub irq: i16,
-    /// Its priority.
+    /// Priority of the interrupt.
     pub priority: u8,
     /// Whether it is checked.
     pub gated: bool,
@@ -105,7 +105,7 @@ pub struct InterruptRow {
     pub instructions: usize,
     /// Number of their loops.
     pub loops: usize,
-    /// Its worst stack, in bytes.
+    /// Worst stack of the interrupt, in bytes.
     pub stack: u32,
     /// The stack is a lower bound only.
     pub at_least: bool,
@@ -116,7 +116,7 @@ pub struct InterruptRow {
 pub struct LoopRow {
     /// The function that holds it in the source.
     pub function: String,
-    /// Its line there, and the line of the library that it comes from.
+    /// Line of the loop in that function, and the line of the library that it comes from.
     pub place: String,
     /// Number of places where it was inlined.
     pub copies: usize,
@@ -146,8 +146,8 @@ pub struct Finding {
     pub check: &'static str,
     /// Description of the finding.
     pub what: String,
-    /// Its places, one a line, or the steps of a path.
+    /// Places of the finding, one a line, or the steps of a path.
     pub at: Vec<String>,
-    /// Its remedy.
+    /// Remedy of the finding.
     pub todo: String,
 }

@@ -20,7 +20,7 @@ pub struct Frame {
     pub calls: Vec<(u32, u32)>,
     /// Addresses at which `sp` is set to something unknown, or grows in a loop.
     pub dynamic: Vec<u32>,
-    /// It has calls or jumps with unknown target.
+    /// The function has calls or jumps with unknown target.
     pub unknown_calls: bool,
 }
 

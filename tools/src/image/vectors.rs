@@ -6,7 +6,7 @@ use crate::image::error::ImageError;
 /// Content of the table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Vectors {
-    /// Its address.
+    /// Address of the table.
     pub address: u32,
     /// The stack pointer at reset.
     pub stack: u32,

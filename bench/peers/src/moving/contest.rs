@@ -27,7 +27,7 @@ pub struct Case {
 pub struct Entrant {
     /// Library and method.
     pub name: String,
-    /// Its setting; none for ours, which has none, and for a peer that finishes with none.
+    /// Setting of the method; none for ours, and for a peer that finishes with none.
     pub setting: Option<Setting>,
     /// Events that it found.
     pub events: usize,
@@ -45,7 +45,7 @@ impl Case {
     /// Ours, and each peer at the cheapest setting that is good enough.
     pub fn new(hand: &Hand, convention: Convention, quick: bool, out: &mut Delivery) -> Self {
         let mut runner = ours::reference_events(convention, hand);
-        // It cannot fail.
+        // `reference` cannot fail.
         let _ = runner(Task::Events, out);
         let truth = out.events.clone();
         let ours = Entrant {

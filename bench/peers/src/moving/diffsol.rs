@@ -51,7 +51,7 @@ pub(super) fn bdf(phases: Phases, setting: Setting) -> Result<Runner, String> {
         let solver = problem
             .bdf::<NalgebraLU<f64>>()
             .map_err(|e| e.to_string())?;
-        // It starts again at order 1: the step of the old order would be rejected.
+        // The method starts again at order 1: the step of the old order would be rejected.
         let mut phase = Phase::new(solver, &phases, |solver: &mut _| {
             let p = &problem;
             solver

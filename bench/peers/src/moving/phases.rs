@@ -27,9 +27,9 @@ const MOST_EVENTS: usize = 4000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StickBy {
-    /// It integrates θ̇ = Ω.
+    /// Integration of θ̇ = Ω.
     Integration,
-    /// It knows that θ follows φ.
+    /// Law of a stick, which the peer knows: θ follows φ.
     Position,
 }
 
@@ -41,7 +41,7 @@ enum Phase {
         /// θ₀ − φ₀, rad.
         offset_rad: f64,
     },
-    /// It swings.
+    /// Swing of the object.
     Slip {
         /// s.
         sense: f64,

@@ -59,7 +59,7 @@ pub(super) fn bdf(setting: Setting) -> Result<Runner, String> {
         problem
             .bdf::<NalgebraLU<f64>>()
             .and_then(|solver| {
-                // It starts again at order 1: the step of the old order would be rejected.
+                // The method starts again at order 1: the step of the old order would be rejected.
                 run(solver, &mode, setting, task, out, |solver| {
                     let p = &problem;
                     solver

@@ -1,6 +1,6 @@
 //! `ivp`: SciPy's `solve_ivp` in Rust.
 //!
-//! Its solve call with events allocates for every sample, searches its steps from the first for
+//! A solve call with events allocates for every sample, searches its steps from the first for
 //! each, and with `t_eval` loses the samples of the step in which a terminal event lies. So its
 //! methods are called directly, with its callback after each step, which costs less than half as
 //! much. The callback gets the library's interpolant but not its event search, which is private:

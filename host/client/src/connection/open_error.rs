@@ -36,7 +36,7 @@ pub enum OpenError {
         "{port}: no program serves this simulated device any more; `crepitus serve-sim` starts one"
     )]
     Stale {
-        /// Its port.
+        /// Port of the simulated device.
         port: String,
     },
     /// The port cannot be opened.

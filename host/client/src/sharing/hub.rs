@@ -6,7 +6,7 @@
 //!           └─ send <──── one queue <───────── read <─── program
 //! ```
 //!
-//! It ends with its owner, or when the port fails. Then every program is notified, and
+//! The hub ends with its owner, or when the port fails. Then every program is notified, and
 //! the lock falls to one of them.
 
 use crate::sharing::frames::Frames;
@@ -89,7 +89,7 @@ impl Hub {
             for_receive.end();
             // A thread that has panicked has ended, too.
             let _ = sending.join();
-            // It returns the lock, which ends last.
+            // The acceptor returns the lock, which ends last.
             drop(acceptor.join());
         });
         Self {
@@ -173,7 +173,7 @@ impl State {
                 Err(_) => return self.end(),
             }
             sent = match queue.recv_timeout(LOOK_EVERY) {
-                // It has waited for this program to go on.
+                // The frame has waited for this program to go on.
                 Ok(_) if self.was_stopped() => return self.end(),
                 Ok(frame) => port.send(&frame),
                 Err(RecvTimeoutError::Timeout) => Ok(()),
@@ -515,7 +515,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// The same of frames that the hub had taken before it was stopped.
+    /// Frames that the hub had taken before it was stopped are not sent when it goes on.
     #[test]
     fn what_has_waited_in_the_queue_of_a_program_that_was_stopped_is_not_sent() {
         const FRAME: &[u8] = b"\x03ab\0";
@@ -567,7 +567,7 @@ pub(crate) mod tests {
             other.fill(Duration::from_millis(20)).unwrap();
         }
         let heir = other.heir().unwrap().frame().unwrap();
-        // Its program lives: nothing is ended.
+        // The program that serves lives: nothing is ended.
         other.send(&heir).unwrap();
         thread::sleep(Duration::from_millis(100));
         assert_eq!(requests_in(&sent_before.lock().unwrap()).len(), 2);

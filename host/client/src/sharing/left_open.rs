@@ -24,7 +24,7 @@ impl LeftOpen {
     /// Takes note of a request.
     pub(crate) fn requests(&mut self, request: &Request) {
         match request.operation {
-            // Its number is compared with those of renewals only.
+            // The number of a renewal is compared with those of renewals only.
             Operation::Renew => return self.renewed = Some(Instant::now()),
             Operation::Arm => self.asked = Some(Instant::now()),
             Operation::Disarm => (self.asked, self.renewed) = (None, None),
@@ -45,7 +45,7 @@ impl LeftOpen {
         self.last = Some((request.session, request.nonce, request.number));
     }
 
-    /// Its session.
+    /// Session of the program.
     pub(crate) fn session(&self) -> Option<Session> {
         self.last.map(|(session, ..)| session)
     }
@@ -65,7 +65,7 @@ impl LeftOpen {
         self.will(is_recent(self.asked) || self.renews())
     }
 
-    /// The same of a program of which only this is known: it may be armed.
+    /// Requests on behalf of a program of which only `may_be_armed` is known.
     pub(crate) fn will(&self, may_be_armed: bool) -> Vec<Frame> {
         let Some((session, nonce, last)) = self.last else {
             return Vec::new();

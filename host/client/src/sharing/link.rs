@@ -24,7 +24,7 @@ pub(crate) struct Link {
     notes: VecDeque<Note>,
     /// Subscription and lease of the program that serves, unless it has ended in order.
     heir: Option<Note>,
-    /// It has closed its end.
+    /// The hub has closed its end.
     is_cut: bool,
 }
 

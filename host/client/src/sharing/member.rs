@@ -25,7 +25,7 @@ impl Member {
         }
     }
 
-    /// It says who it is.
+    /// Takes the program's introduction.
     pub(crate) fn introduce(&mut self, program: Program) {
         self.program = program;
     }
@@ -35,7 +35,7 @@ impl Member {
     /// lost on the connection.
     pub(crate) fn pass(&self, chunk: &Chunk) {
         match self.outbox.try_send(chunk.clone()) {
-            // Its reader notices that it has gone.
+            // The reader notices that a program has gone.
             Ok(()) | Err(TrySendError::Full(_) | TrySendError::Disconnected(_)) => {}
         }
     }

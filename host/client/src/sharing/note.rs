@@ -23,9 +23,9 @@ pub struct Program {
     pub name: String,
     /// Process id.
     pub pid: u32,
-    /// Its session, once it has opened one.
+    /// Session of the program, once it has opened one.
     pub session: Option<Session>,
-    /// It renews the lease: the device is armed for it.
+    /// The program renews the lease: the device is armed for it.
     pub is_armed: bool,
 }
 
@@ -60,9 +60,9 @@ pub(crate) enum Note {
     /// Subscription and lease that the program that serves has left open: to all others, after each of
     /// its requests. If it is killed, they give both to the next hub, which ends them.
     Heir {
-        /// Its subscription.
+        /// Subscription of the program.
         open: LeftOpen,
-        /// Its lease.
+        /// Lease of the program.
         is_armed: bool,
     },
     /// The hub ends: connect again.

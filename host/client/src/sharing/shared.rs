@@ -37,7 +37,7 @@ pub struct Shared {
     /// Pseudo-terminal that the port was when it was opened first.
     terminal: Option<PseudoTerminal>,
     program: Program,
-    /// Its subscription and lease, which it tells the next hub.
+    /// Subscription and lease of this program, which it tells the next hub.
     sent: Frames,
     open: LeftOpen,
     link: Option<Link>,
@@ -190,7 +190,7 @@ impl Shared {
                 port: self.port.clone(),
                 holder: crate::holder_of(&self.port),
             }),
-            // It has just ended.
+            // The hub has just ended.
             Err(_) => Ok(false),
         }
     }

@@ -111,7 +111,7 @@ fn any_host_can_stop() {
         (State::Armed, State::Disarmed, None)
     );
     assert!(!owner.is_armed());
-    // It is no fault, so there is nothing to clear.
+    // A stop is no fault, so there is nothing to clear.
     owner.zero().unwrap();
     owner.arm().unwrap();
 }

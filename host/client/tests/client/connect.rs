@@ -102,7 +102,7 @@ fn a_device_with_another_schema_can_be_stopped() {
     owner.zero().unwrap();
     owner.arm().unwrap();
     assert_eq!(shared.borrow().comms.state(), State::Armed);
-    // The same device, seen by a tool that finds another hash in its hello.
+    // Another tool at this device finds another hash in its hello.
     let mut stranger = Management::with(Port::new(&shared), options(2));
     let mut handshake = stranger.identify().unwrap();
     handshake.comms.schema ^= 1;

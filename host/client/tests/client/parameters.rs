@@ -268,7 +268,7 @@ fn an_unconfirmed_commit_is_reported() {
     );
     shared.borrow_mut().link_is_cut = false;
     pump_for(&mut client, ms(30));
-    // It was applied meanwhile.
+    // The commit was applied meanwhile.
     let status = client.status().unwrap();
     assert_eq!(
         (status.revision, status.in_force),

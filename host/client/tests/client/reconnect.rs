@@ -27,7 +27,7 @@ fn a_lost_connection_is_reported_once_and_resumes_its_subscription() {
     let until = client.accounting().unwrap().next_tick();
     let before = check_books(&client);
 
-    // It is not back yet.
+    // The device is not back yet.
     let error = client.reconnect(ms(300)).unwrap_err();
     assert!(matches!(
         error,

@@ -143,7 +143,7 @@ fn a_line_that_spoils_a_byte_in_five_hundred_is_slow_and_right() {
         torque += 0.01;
         let set = loop {
             match client.set(&[(id::STATIC_TORQUE, torque)]) {
-                // It may have been executed, which the error says.
+                // The set may have been executed, which the error says.
                 Err(Error::NoAnswer { .. }) => unknown += 1,
                 other => break other.unwrap(),
             }

@@ -1,4 +1,4 @@
-//! The same over a pty, in the wall's time.
+//! The client over a pty, in the wall's time.
 
 use crate::support::{Device, ms};
 use crepitus_client::{Client, Error, Event, Holder, Serial, Transport, TransportError};

@@ -57,7 +57,7 @@ fn ten_seconds_arrive_whole() {
         assert_eq!(pair[1].first_tick, pair[0].end_tick());
         assert_eq!(pair[1].sequence, pair[0].sequence.wrapping_add(1));
     }
-    // It grated all the time: ωn/(2π + 2(λ − atan λ)) = 31.7 Hz at 0.3 rad/s.
+    // The joint grated all the time: ωn/(2π + 2(λ − atan λ)) = 31.7 Hz at 0.3 rad/s.
     let samples = || blocks.iter().flat_map(|block| &block.samples);
     let breaks = samples()
         .filter(|s| s.flags.has(SampleFlags::BREAK))
@@ -124,14 +124,14 @@ fn a_slow_host_gets_the_count_of_lost_samples() {
     client.transport_mut().wait(ms(500));
     pump_for(&mut client, ms(200));
     let [_, _, dropped, lost] = check_books(&client);
-    // It was away for 500 ms, of which about 60 found room on the way.
+    // The host was away for 500 ms, of which about 60 found room on the way.
     assert!((8_000..10_000).contains(&dropped), "{dropped}");
     assert_eq!(lost, 0);
     let accounting = client.accounting().unwrap();
     assert_eq!(accounting.gap_count(), 1);
 }
 
-/// It receives half of what the device sends, and the system's buffer is full all the time.
+/// A computer that receives half of what the device sends: the system's buffer is always full.
 #[test]
 fn a_computer_that_is_slow_at_receiving_hands_out_all_that_it_receives() {
     let (shared, mut client) = connected();

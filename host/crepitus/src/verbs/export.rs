@@ -34,7 +34,7 @@ impl ExportFormat {
         }
     }
 
-    /// Its writer; none if this program was built without it.
+    /// Writer of the format; none if this program was built without it.
     fn writer(self) -> Option<Write> {
         match self {
             Self::Csv => Some(csv),

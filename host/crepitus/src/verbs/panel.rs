@@ -82,7 +82,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     let mut client = Client::connect(open_in_real_time(&arguments.device)?).map_err(failure)?;
     if let Line::Simulated(_) = client.transport_mut() {
-        // Its leg begins at the scene's angle, and moves at once: nobody can hold it straight.
+        // A simulated leg begins at the scene's angle and moves at once: none can hold it straight.
         client.zero().map_err(failure)?;
     }
     let source = Source::Device {

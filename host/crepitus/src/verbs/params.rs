@@ -98,8 +98,9 @@ enum Action {
     },
     /// Save the device's knee as a preset of one's own.
     ///
-    /// It gets every value of the effects that are on, and lands in the folder that the environment
-    /// variable CREPITUS_PRESETS names, or in crepitus/presets of the user's configuration.
+    /// The preset gets every value of the effects that are on, and lands in the folder that the
+    /// environment variable CREPITUS_PRESETS names, or in crepitus/presets of the user's
+    /// configuration.
     SavePreset(SavePreset),
     /// Save the current parameters for the next start.
     Save,

@@ -116,7 +116,7 @@ pub(super) fn write(
     write_into(folder, recording, out, extras, &protected)
 }
 
-/// The same by way of a folder that is prepared, with what it has already.
+/// Writes the report by way of a folder that is prepared, with what it has already.
 pub(super) fn write_into(
     folder: Folder,
     recording: &Recording,
@@ -326,7 +326,7 @@ mod tests {
         page_under(&[(Block::default().revision, *values)], blocks)
     }
 
-    /// The same under the parameters of the revision of each block.
+    /// The page of a recording of these blocks, each under the parameters of its revision.
     fn page_under(revisions: &[(Revision, Values)], blocks: impl Iterator<Item = Block>) -> String {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a");
@@ -467,7 +467,7 @@ mod tests {
 
     #[test]
     fn no_line_reaches_across_a_restart_of_the_drive() {
-        // Its ticks begin again, at 0.
+        // The drive's ticks begin again, at 0.
         let page = page(&[(1_000, 1, 200), (0, 2, 200)]);
         assert!(page.contains(BLANK) && page.contains(RESTARTED));
         assert!(page.contains("The drive restarted once"));

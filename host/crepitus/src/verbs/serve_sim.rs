@@ -49,7 +49,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "KIND", default_value = "sim")]
     device: Kind,
 
-    /// Its name, for --device of the other commands.
+    /// Name of the device, for --device of the other commands.
     #[arg(long, value_name = "NAME", default_value = "sim-1")]
     name: String,
 

@@ -115,7 +115,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     )?;
     if as_json {
         print_json(&json!({ "out": json_path(&out), "summary": summary }))?;
-        // Its cells are in the summary.
+        // The broken cells are in the summary.
         return if matrix.broken().next().is_some() {
             Err(Failure::Negative)
         } else {

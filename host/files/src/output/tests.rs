@@ -251,7 +251,7 @@ fn a_subfolder_is_removed_with_own_files_alone() {
         assert_eq!(home.path().join("parts").exists(), foreign);
     }
     assert_eq!(names(&home.path().join("parts")), ["deep"]);
-    // It is not this program's any more.
+    // The folder is not this program's any more.
     let error = outer.subfolder("parts").unwrap_err();
     assert_eq!(reasons(error), one("parts", Reason::Folder));
 }

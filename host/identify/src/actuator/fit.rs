@@ -73,7 +73,7 @@ pub(crate) struct Hum {
 /// A second resonance, as far as the residual shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Explained {
-    /// Its frequency, Hz.
+    /// Frequency of the second resonance, Hz.
     pub(crate) hz: f64,
     /// Height of its hump in the impedance over that of the first.
     pub(crate) height: f64,

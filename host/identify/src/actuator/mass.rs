@@ -165,7 +165,7 @@ mod tests {
         assert!((found.mass_kg.value / 0.06 - 1.0).abs() < 0.02);
         let swapped = by_added_mass(&with, &bare, added).unwrap_err();
         assert!(swapped.to_string().contains("swapped"), "{swapped}");
-        // The same twice is too small a mass.
+        // Equal fits mean too small a mass.
         let same = by_added_mass(&bare, &bare, added).unwrap_err();
         assert!(matches!(same, Refusal::AddedMassSmall { .. }), "{same}");
     }

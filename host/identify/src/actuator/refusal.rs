@@ -20,7 +20,7 @@ pub enum Refusal {
     /// No voltage.
     #[error("no voltage: {volts:.4} V rms; expected the chirp in the column volts")]
     NoVoltage {
-        /// Its root mean square, V.
+        /// Root mean square of the voltage, V.
         volts: f64,
     },
     /// Too few samples to tell noise from misfit.
@@ -77,7 +77,7 @@ pub enum Refusal {
     NoResonance {
         /// Start of the band, Hz.
         from_hz: f64,
-        /// Its end, Hz.
+        /// End of the band, Hz.
         to_hz: f64,
     },
     /// The resonance is too near an end of the band.
@@ -90,7 +90,7 @@ pub enum Refusal {
         resonance_hz: f64,
         /// Start of the band, Hz.
         from_hz: f64,
-        /// Its end, Hz.
+        /// End of the band, Hz.
         to_hz: f64,
         /// Greatest start that would do, Hz.
         below_hz: f64,
@@ -125,7 +125,7 @@ pub enum Refusal {
          noise): the ring moves, as in a hand or on a leg; clamp it in a vice, and keep the cable from swinging"
     )]
     SecondResonance {
-        /// Its frequency, Hz.
+        /// Frequency of the second resonance, Hz.
         hz: f64,
         /// Height of its hump over that of the first, %.
         height: f64,
@@ -149,9 +149,9 @@ pub enum Refusal {
          nor noise: mains hum, or another device's; twist the wires, and keep them away from mains and its adapters"
     )]
     Hum {
-        /// Its frequency, Hz.
+        /// Frequency of the hum, Hz.
         hz: f64,
-        /// Its share of the unexplained power, %.
+        /// Share of the hum in the unexplained power, %.
         share: f64,
     },
     /// Current that no linear system has.
@@ -174,7 +174,7 @@ pub enum Refusal {
     Negative {
         /// Name of the number, with its unit.
         what: &'static str,
-        /// Its value.
+        /// Value of the number.
         value: f64,
     },
     /// The noise leaves a parameter too uncertain.

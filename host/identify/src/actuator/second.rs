@@ -31,7 +31,7 @@ const BROAD: f64 = 1.0;
 /// The second resonance that explains most of the residual.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Second {
-    /// Its frequency, Hz.
+    /// Frequency of the second resonance, Hz.
     pub(crate) hz: f64,
     /// Power of the residual that it explains, as a sum over the lines.
     pub(crate) power: f64,

@@ -71,7 +71,7 @@ pub enum SeriesError {
     /// A column is missing.
     #[error("has no column {name:?}: expected the columns t_s, volts, amperes")]
     Column {
-        /// Its name.
+        /// Name of the column.
         name: &'static str,
     },
     /// A field is not a finite number.
@@ -119,7 +119,7 @@ pub enum SeriesError {
     /// Too short.
     #[error("{duration_s:.3} s are too short: expected at least {SHORTEST_S} s")]
     Short {
-        /// Its length, s.
+        /// Length of the series, s.
         duration_s: f64,
     },
 }
@@ -222,7 +222,7 @@ impl Series {
             for ((values, place), column) in columns.iter_mut().zip(places).zip(NAMES) {
                 values.push(number(place, column)?);
             }
-            // It is the same in every row.
+            // The hold is the same in every row.
             if let (None, Some(place)) = (hold_s, place_of_hold) {
                 hold_s = Some(number(place, HOLD)?);
             }

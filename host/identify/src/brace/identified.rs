@@ -73,7 +73,7 @@ impl Brace {
 pub struct Trace {
     /// Place of its recording, from 0.
     pub recording: usize,
-    /// Its points over time.
+    /// Points of the swing over time.
     pub points: Vec<TracePoint>,
 }
 

@@ -9,7 +9,7 @@ pub enum Refusal {
         "the recording is too short: {duration_s:.1} s; record from before the release until the weight hangs still"
     )]
     Short {
-        /// Its length, s.
+        /// Length of the recording, s.
         duration_s: f64,
     },
     /// Samples are missing.
@@ -96,7 +96,7 @@ pub enum Refusal {
     Given {
         /// Name of the value.
         what: &'static str,
-        /// Its value.
+        /// The value that was given.
         value: f64,
     },
     /// The fit does not explain the motion.
@@ -123,13 +123,13 @@ pub enum Refusal {
     Contradiction {
         /// Name of what was given.
         what: &'static str,
-        /// Its unit.
+        /// Unit of the values.
         unit: &'static str,
         /// Value that the swing gives.
         found: f64,
         /// Value that was given.
         given: f64,
-        /// Its 95 % interval.
+        /// 95 % interval of the given value.
         error: f64,
         /// Another possible cause, for people.
         also: &'static str,
@@ -141,9 +141,9 @@ pub enum Refusal {
     Impossible {
         /// Name of the quantity.
         what: &'static str,
-        /// Its value.
+        /// Value of the quantity.
         value: f64,
-        /// Its unit.
+        /// Unit of the value.
         unit: &'static str,
     },
     /// The caller has ended it.

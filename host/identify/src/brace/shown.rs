@@ -21,6 +21,6 @@ pub enum Result {
 pub struct Shown {
     /// The quantity.
     pub quantity: Quantity,
-    /// Its value, or why it is not visible.
+    /// Value of the quantity, or why it is not visible.
     pub result: Result,
 }

@@ -86,7 +86,7 @@ impl Truth {
         }
     }
 
-    /// Its scene; the limb is the weight, and what a leg has besides is added by `limb`.
+    /// Scene of this brace; the limb is the weight, and what a leg has besides is added by `limb`.
     fn scene(&self, limb: &str) -> String {
         let Self {
             friction_nm,

@@ -92,7 +92,7 @@ impl Axis {
         }
     }
 
-    /// The same range with as many ticks as have room for their labels, to the right, on this many
+    /// The range with as many ticks as have room for their labels, to the right, on this many
     /// CSS pixels.
     pub(crate) fn fitting(self, px: f64) -> Self {
         let mut fewer = self;

@@ -16,7 +16,7 @@ impl CurveStyle {
         drawing.finish()
     }
 
-    /// The same as an element between words.
+    /// Sample as an element between words.
     pub fn inline(self, filled: bool) -> Markup {
         html! {
             svg.sample width="44" height="16" viewBox="0 0 44 16" stroke-linejoin="round" aria-hidden="true" {

@@ -34,7 +34,7 @@ impl Ink {
         }
     }
 
-    /// The same with another colour in a paper.
+    /// The role with another colour in a paper.
     const fn in_print(self, print: &'static str) -> Self {
         Self { print, ..self }
     }

@@ -77,7 +77,7 @@ impl Picture {
         print_mm(self.size.0, sizes.fold(SIZE, f64::min))
     }
 
-    /// The same picture with its [width in print](Self::print_mm) in place of pixels, and the inks of
+    /// The picture with its [width in print](Self::print_mm) in place of pixels, and the inks of
     /// a paper.
     #[must_use]
     pub fn in_print(self) -> Self {

@@ -28,7 +28,7 @@ pub struct Plot {
 /// A moment with its name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
-    /// Its value of x.
+    /// Value of x.
     pub at: f64,
     /// Event at this moment, in a few words.
     pub name: String,
@@ -49,7 +49,7 @@ impl Plot {
         &self.y
     }
 
-    /// Its edges.
+    /// Edges of the plot.
     pub fn frame(&self) -> Frame {
         self.frame
     }

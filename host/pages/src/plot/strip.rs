@@ -54,7 +54,7 @@ impl Strip {
             } else {
                 right.min(width - long)
             };
-            // Its line must not cross a name in a row below.
+            // The line of the name must not cross a name in a row below.
             let is_free = |row: &usize| ends[*row..].iter().all(|end| *end < start.min(line) - GAP);
             let row = (0..ends.len()).find(is_free).unwrap_or(ends.len());
             if row >= MOST_ROWS {

@@ -5,7 +5,7 @@ use crate::plot::palette::{Ink, TEXT};
 /// Style of a line.
 #[derive(Clone, Copy, Debug)]
 pub struct Stroke {
-    /// Its colour.
+    /// Colour of the line.
     pub ink: Ink,
     /// CSS pixels.
     pub width: f64,

@@ -76,7 +76,7 @@ fn intervals(beats: &[Beat]) -> Vec<Point> {
     between(beats, |from, to| to.time_s - from.time_s)
 }
 
-/// The same by the settings.
+/// Intervals that the settings give for these beats: (s, ms).
 fn rhythm(beats: &[Beat], settings: &ClonusSettings) -> Vec<Point> {
     between(beats, |from, _| settings.interval_s(from.number))
 }

@@ -41,7 +41,7 @@ impl Quantity {
         Self::MotorTorque,
     ];
 
-    /// Its column in a trace, in the units of which it is compared.
+    /// Column of the quantity in a trace, in the units of which it is compared.
     pub fn column(self) -> &'static str {
         match self {
             Self::Angle => "angle_rad",

@@ -22,7 +22,7 @@ pub(crate) struct Shown {
     column: &'static str,
     /// Description.
     pub(crate) title: &'static str,
-    /// Its axis, with the unit.
+    /// Label of the axis, with the unit.
     pub(crate) axis: &'static str,
     /// Factor from the column's unit to that of the axis.
     scale: f64,

@@ -131,7 +131,7 @@ impl Welch {
                 Point::new(hz, amplitude)
             })
             .collect();
-        // The same windows, so the same frequencies.
+        // Equal windows, so equal frequencies.
         for (point, amplitude) in points
             .iter_mut()
             .zip(slow.iter().flat_map(|s| &s.amplitudes))

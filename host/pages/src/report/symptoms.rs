@@ -27,7 +27,7 @@ use words::Words;
 /// Positions of a symptom's numbers in a row.
 #[derive(Clone, Copy, Debug)]
 struct Places {
-    /// Its own torque; otherwise that of all is read.
+    /// Torque of the symptom alone; without it that of all is read.
     torque: Option<usize>,
     phase: Option<usize>,
 }
@@ -153,7 +153,7 @@ impl Symptom {
 
     /// An event that a run reports.
     fn event(&mut self, event: &SymptomEvent) {
-        // Its torques are of a whole beat: those of the rows show it.
+        // The torques of such an event are of a whole beat: those of the rows show it.
         if matches!(event.word, Word::Weak | Word::Unfelt) {
             return;
         }

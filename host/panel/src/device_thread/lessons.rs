@@ -133,7 +133,7 @@ impl<T: Transport> DeviceThread<'_, T> {
         let now_s = self.now_s;
         let held = self.lesson.as_mut().ok_or(NO_LESSON)?;
         let before = (held.session.lesson.clone(), held.left_s);
-        // It is hidden before the device has it.
+        // The knee is hidden before the device has it.
         let lesson = &mut held.session.lesson;
         let preset = lesson.start().map_err(|e| e.to_string())?.preset.clone();
         let trial = lesson.trial();
@@ -178,7 +178,7 @@ impl<T: Transport> DeviceThread<'_, T> {
         let text = format!("Trial {trial}");
         self.push_note(&text, "lesson");
         if let Some(held) = &mut self.lesson {
-            // Its text is short.
+            // The text of the note is short.
             let _ = held.session.lesson.note(self.now_s, &text, By::Lesson);
         }
     }

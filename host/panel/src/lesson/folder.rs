@@ -108,7 +108,7 @@ impl SessionFolder {
         Ok((Self { path }, session))
     }
 
-    /// Its path.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -1,6 +1,6 @@
 //! Order of the trials, from a seed.
 //!
-//! The same plan, seed and number of repeats give the same order, in every version and on every
+//! Equal plans, seeds and numbers of repeats give the same order, in every version and on every
 //! machine: a lesson can be held again, with another group, and the two be compared. So the
 //! generator is a few lines of our own, which no library's next release changes, and a test
 //! holds golden orders.
@@ -65,7 +65,7 @@ pub fn shuffled<K: PartialEq>(knees: &[K], repeats: usize, seed: u64) -> Vec<usi
         let j = usize::try_from(random.below(i as u64 + 1)).unwrap_or(i);
         order.swap(i, j);
     }
-    // The same number for the same knee.
+    // Equal knees have the same number.
     let kind = |knee: &K| knees.iter().position(|other| other == knee).unwrap_or(0);
     let kinds: Vec<_> = knees.iter().map(kind).collect();
     separated(order, &kinds)

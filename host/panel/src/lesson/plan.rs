@@ -124,7 +124,7 @@ pub enum PlanError {
     Text {
         /// The key.
         key: &'static str,
-        /// Its number of characters.
+        /// Number of characters of the text.
         characters: usize,
         /// The most.
         most: usize,
@@ -271,12 +271,12 @@ impl CheckedPlan {
         &self.plan
     }
 
-    /// Its knees, in its order.
+    /// Knees of the plan, in its order.
     pub fn knees(&self) -> &[Knee] {
         &self.knees
     }
 
-    /// The same with another number of repeats.
+    /// The plan with another number of repeats.
     ///
     /// # Errors
     /// [`PlanError::Trials`] if that is none or too many.

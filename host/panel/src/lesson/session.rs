@@ -58,7 +58,7 @@ pub enum SessionError {
         "the session has format {format}; this version reads {FORMAT}: install a newer version of Crepitus"
     )]
     Format {
-        /// Its format.
+        /// Format of the session.
         format: u32,
     },
     /// Parts contradict each other.

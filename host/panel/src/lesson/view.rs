@@ -1,6 +1,6 @@
 //! The `lesson` message of the page: what may be seen of a lesson at this moment.
 //!
-//! It holds nothing that is hidden, so it can be sent to every page.
+//! The message holds nothing that is hidden, so it can be sent to every page.
 
 use crate::lesson::finding::{Finding, Knee, level_name};
 use crate::lesson::lesson::{Answer, Lesson};

@@ -49,7 +49,7 @@ pub struct Marks(pub u16);
 impl Marks {
     /// The imaginary object stuck.
     pub const STICK: u16 = 1;
-    /// It slipped.
+    /// The imaginary object slipped.
     pub const SLIP: u16 = 1 << 1;
     /// The torque differed from the model's, for another reason than being disarmed.
     pub const LIMITED: u16 = 1 << 2;
@@ -255,7 +255,7 @@ impl Envelope {
         (first, self.ready.drain(..).collect())
     }
 
-    /// The same with the last bin, which may have fewer samples.
+    /// Number of the first bin, and all complete ones with the last, which may have fewer samples.
     pub fn finish(mut self) -> (u64, Vec<Bin>) {
         if let Some((number, bin)) = self.bins.open {
             self.ready.push_back(bin);

@@ -7,7 +7,7 @@ use crepitus_model::render::effects::{Phases, SPECS};
 pub struct StateName {
     /// The effect.
     pub effect: &'static str,
-    /// Its phase.
+    /// Phase of the effect.
     pub phase: &'static str,
 }
 

@@ -98,7 +98,7 @@ impl<'b> Recount<'b> {
             .segments
             .checked_sub(1)
             .map(|last| self.books.segments[last]);
-        // The same start: samples were produced meanwhile.
+        // Both segments are of one start of the drive: samples were produced meanwhile.
         if before.is_some_and(|before| before.start == segment.start) {
             self.missing(segment.first_tick.saturating_sub(self.next_tick));
         }

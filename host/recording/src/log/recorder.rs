@@ -261,7 +261,7 @@ impl<D: Disk> Recorder<D> {
             ending,
         });
         self.entry(&checkpoint)?;
-        // It is covered by its own checksum.
+        // The checkpoint is covered by its own checksum.
         self.sum = Sha256::new();
         self.checkpoints += 1;
         self.blocks = 0;

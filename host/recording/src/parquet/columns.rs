@@ -241,7 +241,7 @@ struct Chunk<'g, R> {
 }
 
 impl<R: ChunkReader + 'static> Chunk<'_, R> {
-    /// Its values, and for each row whether it has one.
+    /// Values of the column, and for each row whether it has one.
     fn values<T: DataType>(&self) -> io::Result<(Vec<T::T>, Vec<i16>)> {
         let chunk = self.group.columns().get(self.at).ok_or_else(short)?;
         let pages = SerializedPageReader::new(self.bytes.clone(), chunk, self.count, None)

@@ -85,7 +85,7 @@ impl Reader {
             };
             if seal.first_row > next_row {
                 let of = match books.totals.received {
-                    // Its accounting is lost.
+                    // The accounting of the file is lost.
                     0 => String::new(),
                     all => format!(" of {all}"),
                 };

@@ -67,7 +67,7 @@ pub(super) fn seal(
 }
 
 impl Seal {
-    /// Its footer.
+    /// The footer, decoded.
     pub(super) fn footer(&self) -> io::Result<ParquetMetaData> {
         ParquetMetaDataReader::decode_metadata(&self.footer).map_err(other)
     }

@@ -51,8 +51,8 @@ impl Bench {
         said
     }
 
-    /// The same of a file in which everything else is in its order: nothing is counted that is
-    /// not known.
+    /// Does [`check`](Self::check) for a file in which everything else is in its order: nothing is
+    /// counted that is not known.
     fn check_in_order(&self, bytes: &[u8], rows_least: usize) -> String {
         let said = self.check(bytes, rows_least);
         let produced = salvaged(&self.path()).accounting().totals.produced;
@@ -374,7 +374,7 @@ fn a_part_of_another_recording_is_named() {
     let spliced = [&bench.whole[..cut], &later[..]].concat();
     let said = bench.check(&spliced, 700 * 20);
     assert!(said.contains("Another recording begins in it"), "{said}");
-    // It stands in the middle: behind the next checkpoint the rest is kept.
+    // The other one stands in the middle: behind the next checkpoint the rest is kept.
     let spliced = [&bench.whole[..cut], &later[..], &bench.whole[cut..]].concat();
     let said = bench.check(&spliced, 850 * 20);
     assert!(said.contains("Another recording begins in it"), "{said}");

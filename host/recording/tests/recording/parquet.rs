@@ -119,7 +119,7 @@ fn what_was_wrong_with_the_log_is_said_of_files_that_are_made_of_it() {
     let again = bench.folder.path().join("again");
     converted(&path, &again);
     assert_eq!(open(&again).unwrap().warnings(), warnings);
-    // Its own damage is another matter.
+    // Damage of the file itself is another matter.
     let mut bytes = fs::read(&again).unwrap();
     let late = bytes.len() - 100;
     bytes[late] ^= 1;
@@ -320,7 +320,7 @@ fn the_footer_of_another_recording_is_named_and_costs_no_row() {
         assert!(said.contains("footer is that of another"), "{said}");
         assert!(!said.contains("Rows of another recording"), "{said}");
     }
-    // Its own one is not.
+    // The recording's own footer is not.
     let said = bench.check(&without_head(&bench.whole), bench.all.len());
     assert!(said.contains("metadata could not be checked"), "{said}");
     assert!(!said.contains("another"), "{said}");
@@ -356,7 +356,7 @@ fn seal_ends(file: &[u8]) -> Vec<usize> {
     seals(file).iter().map(end).collect()
 }
 
-/// It is one group.
+/// The recording is one group.
 #[test]
 fn a_recording_of_less_than_two_seconds_is_lost_with_its_group() {
     let bench = Bench::new(1_900);

@@ -49,7 +49,7 @@ fn phases(random: &mut fastrand::Rng) -> EffectPhases {
     all.into()
 }
 
-/// The same with fewer flags and all effects at rest, as in the golden file.
+/// Samples with fewer flags than in [`block`] and all effects at rest, as in the golden file.
 pub(crate) fn plain(first_tick: u64, revision: u32, dropped: u32, start: u16) -> Block {
     let mut random = fastrand::Rng::with_seed(first_tick ^ u64::from(start) << 40);
     let angle = |tick: u64| (900.0 * (tick as f64 * 2e-4).sin()) as i32;
@@ -99,7 +99,7 @@ pub(crate) fn sent(blocks: u64) -> Vec<Sent> {
     sent_of(blocks, block)
 }
 
-/// The same of blocks that are made like this.
+/// Returns the messages of [`sent`], with blocks that are made like this.
 pub(crate) fn sent_of(blocks: u64, block: fn(u64, u32, u32, u16) -> Block) -> Vec<Sent> {
     let mut sent = vec![Sent::Subscribed(Begin {
         first_tick: 1_000,

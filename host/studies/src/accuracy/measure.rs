@@ -19,7 +19,7 @@ use crepitus_scene::scene::Precision;
 pub struct ReferenceRun<'a> {
     /// The scene.
     pub scene: &'a StudyScene,
-    /// Its motion, cut into steps.
+    /// Motion of the scene, cut into steps.
     pub sampling: &'a Sampling<'a>,
     /// The reference's events up to the end of the last step.
     pub events: &'a [TimedEvent],

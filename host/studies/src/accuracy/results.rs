@@ -43,13 +43,13 @@ pub struct Study {
 /// A scene of the study.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudiedScene {
-    /// Its name.
+    /// Name of the scene.
     pub name: String,
-    /// Its title.
+    /// Title of the scene.
     pub title: String,
-    /// Its convention.
+    /// Convention of the scene.
     pub convention: &'static str,
-    /// Its duration, s.
+    /// Duration of the scene, s.
     pub duration_s: f64,
     /// Events of the reference.
     pub events_true: usize,
@@ -75,7 +75,7 @@ pub struct Refused {
 pub struct Skipped {
     /// The scene.
     pub scene: String,
-    /// Its convention.
+    /// Convention of the scene.
     pub convention: &'static str,
     /// The step, s.
     pub step_s: f64,

@@ -23,9 +23,9 @@ const CONSTANT_S: f64 = 10.0;
 
 /// The hand-like sine: amplitude, degrees.
 const SINE_DEG: f64 = 45.0;
-/// Its frequency, Hz.
+/// Frequency of the sine, Hz.
 const SINE_HZ: f64 = 0.25;
-/// Its duration, s: there and back once.
+/// Duration of the sine, s: there and back once.
 const SINE_S: f64 = 4.0;
 
 /// One motion under one convention.

@@ -47,9 +47,9 @@ impl Verdict {
 /// A cell of the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Its setting.
+    /// Setting of the cell.
     pub setting: Setting,
-    /// Its verdict.
+    /// Verdict on the setting.
     pub verdict: Verdict,
     /// Peak-to-peak angle of the shaft in the last half second, rad; NaN if
     /// refused.

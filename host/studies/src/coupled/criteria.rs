@@ -168,7 +168,7 @@ mod tests {
     use super::super::setting::{GEARS, LAGS};
     use super::*;
 
-    /// The same system in the time domain: the exact mechanics would need a
+    /// The coupled system in the time domain: the exact mechanics would need a
     /// matrix exponential; semi-implicit Euler with steps of a hundredth of a
     /// tick is enough. Returns by how much its swing grows from the second half
     /// second to the fourth.

@@ -14,7 +14,7 @@ pub(super) const TICK_S: f64 = 5e-5;
 const STOPS_S: f64 = 0.3;
 const RESTS_S: f64 = 0.35;
 
-/// Its speed before, rad/s.
+/// Speed of the hand before, rad/s.
 const SPEED_RAD_S: f64 = 0.5;
 
 /// Length of a run, s.

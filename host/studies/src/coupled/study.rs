@@ -35,7 +35,7 @@ pub struct Onset {
 pub struct Margin {
     /// The unchanged joint.
     pub setting: Setting,
-    /// Its verdict.
+    /// Verdict on the joint.
     pub verdict: Verdict,
     /// The lowest stiffness that rings, over its own.
     pub onset: Option<f64>,
@@ -48,7 +48,7 @@ pub struct Margin {
 pub struct CoupledStudy {
     /// The map: of each gear, lag and damping every stiffness, in this order.
     pub cells: Vec<Cell>,
-    /// The same without stiffness.
+    /// Onset of each gear, lag and damping of the map, in its order.
     pub onsets: Vec<Onset>,
     /// Each preset on each gear.
     pub presets: Vec<Margin>,

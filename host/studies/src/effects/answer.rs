@@ -24,7 +24,7 @@ pub struct Answer {
     pub tolerance: Tolerance,
     /// The set.
     pub chosen: Subset,
-    /// Its effects, and the result of dropping each one, too.
+    /// Effects of the set, and the result of dropping each one, too.
     pub kept: Vec<Dropped>,
     /// The other effects, and the result of dropping each one alone.
     pub dropped: Vec<Dropped>,

@@ -58,7 +58,7 @@ pub struct Measured {
     pub ripple_nm: f64,
     /// Root mean square of that, N·m.
     pub ripple_rms_nm: f64,
-    /// Its lag behind that of the model's torque, s, by best correlation.
+    /// Lag of the fast part behind that of the model's torque, s, by best correlation.
     pub lag_s: f64,
     /// Mean length of a stick, s.
     pub stick_s: Option<f64>,

@@ -14,9 +14,9 @@ pub const MOST_TICKS: u64 = 40_000_000;
 pub enum Refusal {
     /// The leg is free.
     Released,
-    /// Its solver has no step.
+    /// The scene's solver has no step.
     Reference,
-    /// It has too many ticks.
+    /// The scene has too many ticks.
     TooLong {
         /// Their number.
         ticks: u64,

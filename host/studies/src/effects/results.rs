@@ -12,9 +12,9 @@ use serde::Serialize;
 pub struct EffectsStudy {
     /// The scene's file.
     pub scene: String,
-    /// Its title.
+    /// Title of the scene.
     pub title: String,
-    /// Its effects.
+    /// Effects of the scene.
     pub effects: Vec<&'static str>,
     /// Length of a tick, s.
     pub tick_s: f64,

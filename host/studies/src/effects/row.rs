@@ -19,16 +19,16 @@ pub struct Row {
     pub ns_per_step: f64,
     /// Relative excess of the first quartile of the timings over the fastest.
     pub time_spread: f64,
-    /// Its outcome.
+    /// Outcome of the run.
     pub outcome: Outcome,
 }
 
 /// Outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// It was completed.
+    /// The run was completed.
     Ran(Ran),
-    /// It failed.
+    /// The run failed.
     Failed {
         /// Reason why the run failed.
         failure: String,

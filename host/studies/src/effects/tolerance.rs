@@ -17,7 +17,7 @@ pub type Limit = limits::Limit<Criterion>;
 pub enum Criterion {
     /// Root mean square of the torque's difference.
     Torque,
-    /// Its largest magnitude.
+    /// Largest magnitude of the torque's difference.
     Peak,
     /// Relative difference of the numbers of events.
     Events,
@@ -53,7 +53,7 @@ impl Limited for Criterion {
 }
 
 impl Criterion {
-    /// Its value in a difference.
+    /// Value of the criterion in a difference.
     pub fn of(self, difference: &Difference) -> f64 {
         match self {
             Self::Torque => difference.rms_nm,

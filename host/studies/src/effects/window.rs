@@ -87,7 +87,7 @@ pub(super) fn shown_torques(
         short.duration_s = time_s(to - 1);
         let mut signal = Vec::with_capacity(to - from);
         let mut tick = 0;
-        // It has just run; where it now ends early, so does its line.
+        // The scene has just run; where its run now ends early, so does its line.
         let _ = hand_torque(&short, meter, |torque_nm| {
             if tick >= from {
                 signal.push(torque_nm);

@@ -12,11 +12,11 @@ use std::fmt::Write;
 /// A hard case.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// Its number in the catalogue: `H01`.
+    /// Number in the catalogue: `H01`.
     pub id: &'static str,
-    /// Its name on the command line: `constant-speed`.
+    /// Name on the command line: `constant-speed`.
     pub name: &'static str,
-    /// Its title.
+    /// Title of the case.
     pub title: &'static str,
     /// Reason why it is hard.
     pub hard: &'static str,
@@ -35,7 +35,7 @@ pub struct Case {
 pub struct Trial {
     /// The joint.
     pub settings: Settings,
-    /// Its input.
+    /// Input of the joint.
     pub input: Input,
     /// Criteria beside the common bounds.
     pub criteria: Vec<Criterion>,

@@ -46,7 +46,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// The same in both.
+    /// Equal limits in both precisions.
     pub const fn both(limit: f64) -> Self {
         Self {
             f64: limit,
@@ -214,7 +214,7 @@ pub enum Criterion {
     FirstBreakAfter {
         /// Time since the start, s.
         from_s: f64,
-        /// Its due time, s.
+        /// Due time of the break, s.
         at_s: f64,
         /// Seconds.
         within_s: Limits,
@@ -310,7 +310,7 @@ pub enum ActuatorMeasure {
     ShaftSpeed,
     /// Largest gain of the loop from the actuator to the encoder and back, at gain 1.
     LoopGain,
-    /// The same where the loop is in phase: beyond its reciprocal the loop oscillates.
+    /// Largest gain of the loop where it is in phase: beyond its reciprocal the loop oscillates.
     LoopInPhase,
 }
 

@@ -58,7 +58,7 @@ pub enum Input {
         /// The step, s.
         step_s: f64,
     },
-    /// The same step repeated, for runs too long to cut into steps.
+    /// One step repeated, for runs too long to cut into steps.
     Repeated {
         /// Ω, rad/s.
         omega_rad_s: f64,

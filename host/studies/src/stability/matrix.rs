@@ -42,7 +42,7 @@ pub struct Cell {
 pub struct Row {
     /// The case.
     pub case: Case,
-    /// Its cells, in the order of [`Subject::all`].
+    /// Cells of the case, in the order of [`Subject::all`].
     pub cells: Vec<Cell>,
 }
 

@@ -70,7 +70,7 @@ pub struct Subject {
     pub solver: Rung,
     /// Convention for the end of a slip.
     pub convention: Convention,
-    /// Its precision.
+    /// Precision of the solver.
     pub precision: Precision,
 }
 

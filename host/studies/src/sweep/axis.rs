@@ -7,7 +7,7 @@ use std::str::FromStr;
 pub struct Axis {
     /// Name of the key with the tables before it, such as `effects.crepitus.static_torque_nm`.
     pub path: String,
-    /// Its values.
+    /// Values of the key.
     pub values: Values,
 }
 

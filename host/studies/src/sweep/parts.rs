@@ -22,11 +22,11 @@ use tempfile::NamedTempFile;
 /// Column of a part, with its cells as text; a missing cell is empty.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Its name.
+    /// Name of the column.
     pub name: String,
     /// Kind of its cells.
     pub kind: Kind,
-    /// Its cells.
+    /// Cells of the column.
     pub cells: Cells,
 }
 

@@ -30,7 +30,7 @@ pub struct Identity {
     pub crepitus_version: String,
     /// The scene file.
     pub scene: String,
-    /// Its title.
+    /// Title of the scene.
     pub title: String,
     /// Varied keys.
     pub paths: Vec<String>,

@@ -54,7 +54,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may be gone with its folder.
+        // The lock may be gone with its folder.
         let _ = fs::remove_file(&self.path);
     }
 }

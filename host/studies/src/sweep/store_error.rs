@@ -33,7 +33,7 @@ pub enum StoreError {
     Running {
         /// The folder.
         folder: PathBuf,
-        /// Its points.
+        /// Points that the other program is running.
         points: Range<u64>,
     },
     /// Something is in the way.
@@ -45,7 +45,7 @@ pub enum StoreError {
     /// A file cannot be read or written.
     #[error("{}: {error}", path.display())]
     Io {
-        /// Its path.
+        /// Path of the file.
         path: PathBuf,
         /// The error.
         error: io::Error,

@@ -113,7 +113,7 @@ pub enum TableError {
 pub struct Written {
     /// Path of the file.
     pub file: PathBuf,
-    /// Its size, bytes.
+    /// Size of the file, bytes.
     pub bytes: u64,
     /// Number of failed runs.
     pub failed: u64,
@@ -126,7 +126,7 @@ pub struct Written {
 pub struct Table {
     /// The file, which is removed if it is dropped.
     pub file: NamedTempFile,
-    /// Its size, bytes.
+    /// Size of the file, bytes.
     pub bytes: u64,
     /// Number of failed runs.
     pub failed: u64,

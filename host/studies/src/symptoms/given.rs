@@ -56,7 +56,7 @@ impl Given {
         chosen.map_or(default, |(_, name)| Some(*name))
     }
 
-    /// Its name, with the form in brackets: `cogwheel (space)`.
+    /// Name of the effect, with the form in brackets: `cogwheel (space)`.
     pub fn name(&self) -> String {
         match self.form() {
             Some(form) => format!("{} ({form})", self.effect),
@@ -64,7 +64,7 @@ impl Given {
         }
     }
 
-    /// Its place in the table of effects; beyond the last if there is no such.
+    /// Place in the table of effects; beyond the last if there is no such effect.
     pub fn place(&self) -> usize {
         let found = SPECS.iter().position(|spec| spec.name == self.effect);
         found.unwrap_or(SPECS.len())

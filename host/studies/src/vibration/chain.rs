@@ -58,7 +58,7 @@ impl Step {
         scene
     }
 
-    /// The same with a fixture instead of the hand, which moves as the hand intends; none
+    /// Scene with a fixture instead of the hand, which moves as the hand intends; none
     /// for a bare knee, which has no shell to hold, and for the ringing, which is no
     /// part of T.
     pub(super) fn held(self, scene: &Scene) -> Option<Scene> {

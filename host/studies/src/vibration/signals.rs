@@ -18,7 +18,7 @@ pub(super) struct SettledSignals {
     pub(super) felt: Vec<f64>,
     /// Acceleration of the palm, m/s²; nothing without one.
     pub(super) acceleration: Vec<f64>,
-    /// The same of a bare knee whose joint shows this very torque.
+    /// Acceleration of the palm on a bare knee whose joint shows this very torque, m/s².
     pub(super) of_bare_knee: Vec<f64>,
     pub(super) coil: Option<Coil>,
 }

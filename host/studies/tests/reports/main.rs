@@ -1,4 +1,6 @@
 //! The reports of the studies, from rows to pages: see each module.
+// Small whole numbers.
+#![allow(clippy::cast_precision_loss)]
 
 mod accuracy;
 mod effects;

@@ -150,7 +150,7 @@ fn rendering_crepitus_takes_its_cycles_at_most() {
         let mut cycles = Cycles::default();
         host.board.watch(TICKS, &mut cycles);
         let cost = cycles.costs()[&RENDER];
-        let worst = u64::from(cost.worst_cycles);
+        let worst = cost.worst_cycles;
         on_record(
             "`render_torque` with crepitus",
             limits.flash,

@@ -88,7 +88,7 @@ fn check(cycles: &Cycles, flash: Flash) {
     ] {
         let cost = cycles.costs()[&exception];
         let what = format!("`{name}`, armed with crepitus");
-        let worst = u64::from(cost.worst_cycles);
+        let worst = cost.worst_cycles;
         on_record(&what, flash, Some(cost.mean_cycles()), worst);
         if exception != LINK {
             assert!(cost.calls.abs_diff(TICKS) <= 1, "{name}: {cost:?}");

@@ -19,9 +19,9 @@ use crate::image::program::Function;
 struct Origin {
     /// The function of the source that holds it.
     owner: String,
-    /// Its spot there.
+    /// Spot of the loop in that function.
     spot: Spot,
-    /// The same for display.
+    /// Place of the loop, for display.
     place: String,
     /// The spot is in this repository.
     is_own: bool,

@@ -20,7 +20,7 @@ impl Gate<'_> {
             let function = self.program.functions.get(&address);
             let mut extra = function.map_or_else(Extra::default, |f| self.allowances.extra(f));
             if address == reset {
-                // It may set the stack pointer to its present value.
+                // The reset handler may set the stack pointer to its present value.
                 extra.dynamic = extra.dynamic.or(Some(0));
             }
             extra

@@ -155,7 +155,7 @@ impl Arrival {
     /// Lets it in if it knows the secret.
     ///
     /// # Errors
-    /// It does not, or says nothing.
+    /// The program does not know the secret, or says nothing.
     pub(crate) fn enter(self) -> io::Result<Stream> {
         let Self {
             mut stream,

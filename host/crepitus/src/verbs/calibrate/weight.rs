@@ -17,7 +17,7 @@ pub(super) struct WeightArguments {
     #[arg(long, value_name = "M", requires = "weight_kg")]
     lever_m: Option<f64>,
 
-    /// Its inertia about the axis, kg·m², for the step friction [default: mass times the lever's square].
+    /// Inertia about the axis, kg·m², for the step friction [default: mass times the lever's square].
     #[arg(long, value_name = "KG_M2", requires = "weight_kg")]
     weight_inertia_kg_m2: Option<f64>,
 

@@ -7,7 +7,7 @@ use crepitus_model::control::chirp::ChirpSettings;
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_protocol::chirp::PlayedChirp;
 
-/// Its numbers.
+/// Numbers of the chirp.
 #[derive(Debug, Args)]
 pub(super) struct ChirpArguments {
     /// Amplitude of the chirp, V: halve it if the mass hits its stops.

@@ -83,7 +83,7 @@ fn play(client: &mut Client<Line>, chirp: PlayedChirp, zero: bool) -> Result<Ser
     client.subscribe().map_err(failure)?;
     let mut listening = Listening::new(chirp);
     let end = follow(client, None, Arming::armed(zero), &mut listening);
-    // Its samples would pile up.
+    // Samples after the chirp would pile up.
     client.unsubscribe().map_err(failure)?;
     match end? {
         End::Requested if interrupt::requested() => Err(Failure::Work(

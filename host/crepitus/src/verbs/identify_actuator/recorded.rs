@@ -13,7 +13,7 @@ pub(super) struct Recordings {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     from: Option<PathBuf>,
 
-    /// The same with the added mass.
+    /// Recording of the chirp with the added mass, with the same columns.
     #[arg(long, value_name = "FILE", requires = "from", requires = "added_mass_g",
           value_hint = ValueHint::FilePath)]
     from_added: Option<PathBuf>,

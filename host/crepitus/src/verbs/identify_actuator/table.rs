@@ -11,9 +11,9 @@ use serde_json::{Value, json};
 /// One parameter.
 #[derive(Debug)]
 pub(super) struct Row {
-    /// Its name on the device; `None` for what is no parameter.
+    /// Name on the device; `None` for what is no parameter.
     parameter: Option<&'static str>,
-    /// Its name for people.
+    /// Name for people.
     name: &'static str,
     unit: &'static str,
     estimate: Estimate,

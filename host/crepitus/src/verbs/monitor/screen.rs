@@ -12,7 +12,7 @@ impl Screen {
     /// Takes the terminal. A panic restores it, too.
     ///
     /// # Errors
-    /// It cannot be used.
+    /// The terminal cannot be used.
     pub(super) fn take() -> io::Result<Self> {
         ratatui::try_init().map(ManuallyDrop::new).map(Self)
     }

@@ -39,7 +39,7 @@ pub(super) fn open(link: &str) -> io::Result<Opened> {
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()?;
-    // It hands over to the browser and ends; nobody needs its result.
+    // The program hands over to the browser and ends; nobody needs its result.
     std::thread::spawn(move || child.wait());
     Ok(Opened(file))
 }

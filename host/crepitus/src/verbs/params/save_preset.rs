@@ -14,7 +14,7 @@ use serde_json::json;
 /// Save the device's knee as a preset of one's own.
 #[derive(Debug, Args)]
 pub(super) struct SavePreset {
-    /// Its name: small letters, digits and hyphens.
+    /// Name of the preset: small letters, digits and hyphens.
     name: String,
 
     /// Title, one line.

@@ -10,9 +10,9 @@ use crepitus_scene::trace::{EventKind, EventRecord};
 /// Angle and velocity of the imaginary object; NaN where they are unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Object {
-    /// Its angle, rad.
+    /// Angle of the object, rad.
     pub theta_rad: f64,
-    /// Its velocity, rad/s.
+    /// Velocity of the object, rad/s.
     pub theta_dot_rad_s: f64,
 }
 
@@ -65,7 +65,7 @@ impl ObjectTracker {
             .is_none_or(|(sign, _)| f64::from(sign) != sense);
         let before = match self.object {
             Some(object) if !began => object,
-            // It broke within this tick: at Ts/kr, with the shaft.
+            // The object broke loose within this tick: at Ts/kr, with the shaft.
             _ => Object {
                 theta_rad: sense * p.static_torque_nm / p.stiffness_nm_per_rad,
                 theta_dot_rad_s: f64::from(row.omega_rad_s),

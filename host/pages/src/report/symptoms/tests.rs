@@ -88,7 +88,7 @@ fn every_limit_that_is_drawn_is_met_by_the_torque() {
             let has_torque = |point: &&Point| point.y != 0.0;
             let mut points = line.points.iter().filter(has_torque);
             match line.name {
-                // It releases while it builds up.
+                // The catch releases while it builds up.
                 "height of a catch at its speed" => {
                     let height = points.next().expect("a height");
                     let is_below = |at: &Point| {
@@ -127,7 +127,7 @@ fn a_catch_is_found_where_and_as_strong_as_it_is() {
             near(event.angle_rad.to_degrees(), deg, 0.01);
             near(event.omega_rad_s.to_degrees(), deg_s, 0.01);
             near(settings.catch_nm(event.omega_rad_s), nm, 5e-3);
-            // It releases while it builds up.
+            // The catch releases while it builds up.
             near(met.most_nm, 0.93 * nm, 0.02 * nm);
             let threshold_rad = settings.threshold_rad(event.omega_rad_s);
             near(threshold_rad, event.angle_rad, 1e-4);

@@ -61,7 +61,7 @@ impl Timeline {
         });
     }
 
-    /// It is not known any more.
+    /// Ends the state, which is not known any more.
     pub(crate) fn gap(&mut self) {
         if let Some(open) = self.open {
             self.close(open.to_s);

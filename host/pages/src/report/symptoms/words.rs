@@ -7,7 +7,7 @@ use crepitus_scene::trace::Word;
 /// A symptom as a report names it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Words {
-    /// Its description.
+    /// Description of the effect.
     pub(crate) spec: &'static EffectSpec,
     clinic: &'static ClinicWords,
 }
@@ -28,7 +28,7 @@ impl Words {
         self.clinic.title
     }
 
-    /// Its states, in the order of the numbers of its phases.
+    /// States of the symptom, in the order of the numbers of its phases.
     pub(crate) fn states(&self) -> &'static [&'static str] {
         self.clinic.states
     }

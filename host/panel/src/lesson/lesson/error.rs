@@ -109,7 +109,7 @@ pub enum LessonError {
     /// No text.
     #[error("the note has {characters} characters; expected 1 to {MOST_NOTE}")]
     Note {
-        /// Its number of characters.
+        /// Number of characters of the note.
         characters: usize,
     },
 }

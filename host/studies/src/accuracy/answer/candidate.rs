@@ -79,7 +79,7 @@ pub struct Mark {
     pub limit: Limit,
     /// The error, in the criterion's unit.
     pub error: f64,
-    /// Its scene.
+    /// Scene with this error.
     pub scene: String,
 }
 

@@ -34,7 +34,7 @@ pub(crate) fn unfit(point: &Point, measure: Measure) -> Option<Unfit> {
 /// One rung at one precision.
 #[derive(Debug)]
 pub(crate) struct Curve<'p> {
-    /// Its place among the rungs of the study.
+    /// Place of the rung among those of the study.
     pub(crate) rung: usize,
     pub(crate) name: &'static str,
     /// Steps from long to short; where a point is left out, the curve is

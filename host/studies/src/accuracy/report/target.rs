@@ -48,7 +48,7 @@ pub(crate) fn figure(study: &Study, pair: &Pair) -> Option<Figure> {
     })
 }
 
-/// The same as a drawing.
+/// Drawing of the figure of a pair; none where nothing was run on the target.
 pub(crate) fn diagram(study: &Study, pair: &Pair, paper: Paper) -> Option<Diagram> {
     let spots = spots(study, pair);
     if spots.is_empty() {

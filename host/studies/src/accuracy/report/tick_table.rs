@@ -13,7 +13,7 @@ use crepitus_pages::plot::number::{fixed, rounded, scientific};
 /// A rung at one precision.
 #[derive(Debug)]
 struct Row<'p> {
-    /// Its place among the rungs of the study.
+    /// Place of the rung among those of the study.
     rung: usize,
     point: &'p Point,
     /// Time per step over that of the cheapest rung at this precision.

@@ -67,7 +67,7 @@ pub struct Task<'a> {
     pub is_usual: bool,
     /// The plan.
     pub plan: Plan,
-    /// Its inputs.
+    /// Inputs of the plan.
     pub inputs: Vec<Input>,
 }
 

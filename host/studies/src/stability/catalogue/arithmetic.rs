@@ -1,4 +1,4 @@
-//! The same numbers on every processor.
+//! Arithmetic that gives the same numbers on every processor.
 
 use super::motions::{ACCELERATION_JUMPS, DWELL, SLOW, STOP, THROUGH_ZERO, VELOCITY_JUMPS, WANDER};
 use super::tools::{TICK_S, at_tick, events, joint, knee, paper_joint, sine, trial};

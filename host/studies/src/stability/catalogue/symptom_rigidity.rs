@@ -194,7 +194,7 @@ pub(super) fn texture() -> Case {
                     under(&given, met(10.0), 0.2),
                     [Criterion::Words(&[Word::Snap])],
                 ),
-                // It turns back on the asperity: rounding says whether it was crossed.
+                // The hand turns back on the asperity: rounding says whether it was crossed.
                 trial(
                     under(&given, met(-10.0), 0.2),
                     [Criterion::WordCount {

@@ -47,7 +47,7 @@ pub(super) fn under(given: &Given, hand: Hand, duration_s: f64) -> SymptomRun {
     }
 }
 
-/// The same through the encoder.
+/// This run through the encoder.
 pub(super) fn seen_in_counts(run: SymptomRun) -> SymptomRun {
     SymptomRun {
         counts: true,

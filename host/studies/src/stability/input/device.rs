@@ -116,7 +116,7 @@ pub struct Shake {
 /// Settings or a step that must be refused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attempt {
-    /// Its mistake.
+    /// Mistake in the settings or the step.
     pub what: &'static str,
     /// The settings.
     pub settings: Settings,

@@ -1,4 +1,4 @@
-//! The same for criteria of symptoms besides crepitus.
+//! Tests of the judge for criteria of symptoms besides crepitus.
 
 use super::*;
 use crate::stability::criterion::Limits;

@@ -22,14 +22,14 @@ pub(super) struct Look {
     pub(super) short: String,
     pub(super) flagged: bool,
     pub(super) must_hold: bool,
-    /// It must hold and does not.
+    /// The cell must hold and does not.
     pub(super) broken: bool,
 }
 
 impl Look {
     pub(super) fn of(cell: &Cell) -> Self {
         let (tone, short, flagged) = match &cell.verdict {
-            // It is what the others are measured with.
+            // The reference is what the others are measured with.
             Verdict::Holds(_) if cell.subject.solver == Rung::Reference => {
                 (scale::holds(0.0), MET.to_owned(), false)
             }

@@ -9,7 +9,7 @@ use crepitus_plant::Motion;
 
 /// Amplitude of the knee's sine, degrees.
 const AMPLITUDE_DEG: f64 = 45.0;
-/// Its frequency, Hz.
+/// Frequency of the knee's sine, Hz.
 const FREQUENCY_HZ: f64 = 0.25;
 /// There and back once, s.
 const DURATION_S: f64 = 4.0;
@@ -21,7 +21,7 @@ const STEP_S: f64 = 5e-5;
 pub struct RestickRules {
     /// Amplitude of the knee's sine, degrees.
     pub amplitude_deg: f64,
-    /// Its frequency, Hz.
+    /// Frequency of the knee's sine, Hz.
     pub frequency_hz: f64,
     /// Duration that is shown, s.
     pub duration_s: f64,

@@ -42,7 +42,7 @@ fn what_is_written_is_read_and_neighbours_share_a_part() {
         columns[3].cells,
         Cells::Each(["", "NaN", ""].map(str::to_owned).into())
     );
-    // The same rows again are no other part.
+    // Writing the same rows again makes no other part.
     parts.write(&rows).unwrap();
     let foreign = ["notes.txt", "4-7.csv", ".part-torn"];
     for name in foreign {

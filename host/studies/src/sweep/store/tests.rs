@@ -99,7 +99,7 @@ fn a_killed_sweep_goes_on_from_its_whole_parts() {
     let table = finish(&mut again).unwrap();
     assert!(is_whole(&table));
     assert!(!home.path().join("parts").exists());
-    // The same command then has nothing to do.
+    // A repetition of the command then has nothing to do.
     let done = create(home.path(), "1/1").unwrap();
     assert_eq!(done.table(), Some(table));
 }
@@ -195,7 +195,7 @@ fn another_sweep_is_refused_and_replaced_with_force() {
     let notes = home.path().join("parts/notes.txt");
     fs::write(home.path().join("notes.txt"), "mine").unwrap();
     fs::write(&notes, "mine").unwrap();
-    // Its folder is not only this program's any more.
+    // The folder of the parts is not only this program's any more.
     let error = Store::create(home.path(), &another, &opening("1/1", true)).unwrap_err();
     assert!(matches!(error, StoreError::Output(_)), "{error}");
     assert_eq!(fs::read_to_string(&notes).unwrap(), "mine");
