@@ -100,7 +100,7 @@ pub struct Drive {
 pub struct Crash {
     /// Cause, registers and stack.
     pub head: Head,
-    /// Its last ticks.
+    /// Last ticks before the crash.
     pub ticks: Ring,
 }
 

@@ -4,7 +4,7 @@
 //!   HostBytes::to_send ──▶ transmit store ──▶ IN endpoint ──▶ host     512 bytes, 64 in flight
 //!   HostBytes::received ◀── receive store ◀── OUT endpoint ◀── host     one packet at a time
 //! ```
-//! The same code runs in the firmware, on the OTG_FS peripheral, and in the simulator, on a
+//! This code runs in the firmware, on the OTG_FS peripheral, and in the simulator, on a
 //! software bus; only the [`UsbBus`] differs.
 //!
 //! [`UsbPort::poll`] is called from the USB interrupt and whenever there is something to send. It

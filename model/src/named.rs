@@ -32,7 +32,7 @@ macro_rules! named {
             /// All values, in the order of their declaration.
             $visible const ALL: [Self; [$( $name ),+].len()] = [$( Self::$Value ),+];
 
-            /// Its name, in files and for people.
+            /// Name of the value, in files and for people.
             $visible const fn name(self) -> &'static str {
                 match self {
                     $( Self::$Value => $name, )+

@@ -25,7 +25,7 @@ pub struct ParameterSpec {
 /// A parameter of a device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
-    /// Its number on the wire and in flash. Numbers are given once and need not
+    /// Number of the parameter on the wire and in flash. Numbers are given once and need not
     /// be contiguous.
     pub id: u8,
     /// The effect or the part that it belongs to, as in scene files.

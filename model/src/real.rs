@@ -101,7 +101,7 @@ pub trait Real:
 
     /// The nearest number to `x`.
     fn from_f64(x: f64) -> Self;
-    /// The same number as f64 (exact for both precisions).
+    /// This number as f64 (exact for both precisions).
     fn to_f64(self) -> f64;
     /// The whole part of a non-negative number; negative and NaN give 0, too
     /// large returns `u64::MAX`.
@@ -125,7 +125,7 @@ pub trait Real:
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
 
-    /// The same number, or zero if it is at rest. A NaN stays one.
+    /// This number, or zero if it is at rest. A NaN stays one.
     #[inline]
     #[must_use]
     fn settled(self) -> Self {
@@ -151,7 +151,7 @@ pub trait Real:
         if high < self { high } else { self }
     }
 
-    /// The same number, held within ±`limit`; a NaN stays one.
+    /// This number, held within ±`limit`; a NaN stays one.
     #[inline]
     #[must_use]
     fn within(self, limit: Self) -> Self {

@@ -36,7 +36,7 @@ use position::Position;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Limit {
-    /// It is.
+    /// No limit: the torque shown is the one that the model asks for.
     #[default]
     None = 0,
     /// The joint's largest torque.
@@ -86,7 +86,7 @@ pub struct Shown<F> {
 }
 
 impl<F: Real> Shown<F> {
-    /// The same in f64.
+    /// Converts to f64.
     pub fn to_f64(&self) -> Shown<f64> {
         Shown {
             torque_nm: self.torque_nm.to_f64(),
@@ -127,9 +127,9 @@ impl<F: Real> Shown<F> {
 /// Knowledge of the shaft in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShaftEstimate<F> {
-    /// Its motion since the last sample that was taken.
+    /// Motion of the shaft since the last sample that was taken.
     pub sample: Sample<F>,
-    /// Its velocity as far as known, rad/s; also where this sample is lost.
+    /// Velocity of the shaft as far as known, rad/s; also where this sample is lost.
     pub omega_rad_s: F,
     /// Place of the joint, or the place where it was seen last.
     pub place: Position<F>,

@@ -217,7 +217,7 @@ impl<F: Real> Start<F> {
             Solver::Exact => self.rung::<C, Exact<F>, EndOfStep, V>(visitor),
             Solver::ExactBreak => self.rung::<C, Exact<F>, ExactBreak, V>(visitor),
             Solver::ExactInterpolated => self.rung::<C, Exact<F>, Interpolated, V>(visitor),
-            // It is refused in f32, so that no firmware links it.
+            // `ExactHermite` is refused in f32, so that no firmware links it.
             Solver::ExactHermite if !F::IS_SINGLE => {
                 self.rung::<C, Exact<F>, ExactHermite, V>(visitor)
             }

@@ -131,7 +131,7 @@ fn slack(settings: &BoneShapingSettings) -> f64 {
 fn a_hand_that_goes_with_the_ringing_gets_no_more_than_the_tank() {
     let s = BoneShapingSettings::default();
     for delays in delays() {
-        // It sees which way it is pushed, is struck with all there is, and is
+        // The hand sees which way it is pushed, is struck with all there is, and is
         // as fast as the account is exact for; or slow.
         for speed in [0.5, 5.0, 20.0] {
             let greedy = |n: u32, acting: f64| {

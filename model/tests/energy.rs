@@ -60,7 +60,7 @@ fn returned(parameters: Parameters, delay: usize, sensing: Sensing, angles_rad: 
     guarded
 }
 
-/// The same with the torque that is shown, and with the joint's own.
+/// The energy returned with the torque that is shown, and with the joint's own.
 fn accounting(
     parameters: Parameters,
     delay: usize,

@@ -307,7 +307,7 @@ impl Definition {
                 &mut high
             }) = middle;
         }
-        // It must go on outwards, and not only for rounding.
+        // The torque must go on outwards, and not only for rounding.
         if missing(high + 1e-3 * self.step_s) < -1e-9 {
             Ok(Some(if i == 0 { 0.0 } else { high }))
         } else {

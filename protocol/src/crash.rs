@@ -83,7 +83,7 @@ pub enum Controller {
 pub struct Part {
     /// Index of the part, from 0 on.
     pub number: u8,
-    /// Its words; 0 beyond the end. `None`: there is no record, or no such part.
+    /// Words of the part; 0 beyond the end. `None`: there is no record, or no such part.
     pub words: Option<[u32; PART_WORDS]>,
 }
 
@@ -121,7 +121,7 @@ crepitus_model::named! {
         Fault => "processor fault",
         /// An interrupt or an exception without a handler; the detail is its number.
         Unhandled => "interrupt without a handler",
-        /// It hung until the watchdog reset it.
+        /// The program hung until the watchdog reset it.
         Watchdog => "reset by the watchdog",
     }
 }
@@ -140,9 +140,9 @@ impl End {
 /// A tick of the drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tick {
-    /// Its number, the lowest 32 bits.
+    /// Number of the tick, its lowest 32 bits.
     pub number: u32,
-    /// Its sample.
+    /// Sample of the tick.
     pub sample: Sample,
 }
 
@@ -153,13 +153,13 @@ const NO_TICK: u32 = u32::MAX;
 pub const NO_TICK_WORDS: [u32; TICK_WORDS] = [NO_TICK, 0, 0, 0, 0];
 
 impl Tick {
-    /// Its place in the ring of the last ticks.
+    /// Place of the tick in the ring of the last ticks.
     #[inline]
     pub fn slot(&self) -> usize {
         self.number as usize % TICKS
     }
 
-    /// Its words.
+    /// Words of the tick.
     #[inline]
     pub fn words(&self) -> [u32; TICK_WORDS] {
         let sample = &self.sample;
@@ -220,7 +220,7 @@ impl Head {
         }
     }
 
-    /// Its words.
+    /// Words of the head.
     pub fn words(&self) -> [u32; HEAD_WORDS] {
         let head = [u32::from(self.start) | self.end.number() << 16, self.detail];
         let place = self.place.as_chunks().0.iter().copied();

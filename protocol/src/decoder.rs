@@ -117,7 +117,7 @@ impl Decoder {
         self.push_by(&mut SoftwareCrc, byte)
     }
 
-    /// The same, with most of the checksum by a unit.
+    /// Decodes the next byte, as [`push`](Self::push), with most of the checksum by a unit.
     pub fn push_by(
         &mut self,
         unit: &mut impl WordCrc,
@@ -132,7 +132,7 @@ impl Decoder {
         self.extend_by(&mut SoftwareCrc, bytes)
     }
 
-    /// The same, with most of the checksum by a unit.
+    /// Decodes bytes, as [`extend`](Self::extend), with most of the checksum by a unit.
     pub fn extend_by(
         &mut self,
         unit: &mut impl WordCrc,

@@ -23,7 +23,7 @@ crepitus_model::named! {
 }
 
 impl State {
-    /// Its number in [`telemetry`](crate::telemetry).
+    /// Number of the state in [`telemetry`](crate::telemetry).
     pub fn number(self) -> u8 {
         match self {
             Self::Disarmed => 0,
@@ -38,7 +38,7 @@ crepitus_model::named! {
     /// Reason why the torque differs from the model's.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub enum LimitReason {
-        /// It does not.
+        /// No reason: the torque is the model's.
         #[default]
         None => "none",
         /// Torque limit of the joint.
@@ -63,7 +63,7 @@ crepitus_model::named! {
 }
 
 impl LimitReason {
-    /// Its number in [`telemetry`](crate::telemetry).
+    /// Number of the reason in [`telemetry`](crate::telemetry).
     pub fn number(self) -> u16 {
         match self {
             Self::None => 0,

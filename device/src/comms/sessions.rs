@@ -33,7 +33,7 @@ pub enum RequestClass {
 /// Classification of a renewal, which has no reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RenewalClass {
-    /// It counts.
+    /// A renewal that counts.
     New,
     /// Repeated or older.
     Ignore,

@@ -109,7 +109,7 @@ impl Supervision {
             _ => false,
         };
         if !persists {
-            // It may stand behind the one that was first.
+            // A version mismatch may stand behind the fault that was first.
             self.fault = self.schema_mismatch.then_some(Fault::VersionMismatch);
         }
         self.fault
@@ -134,7 +134,7 @@ impl Supervision {
             }
             match drive.state() {
                 State::Armed => self.was_armed = true,
-                // It has proven that nothing moves current before.
+                // The drive has proven before that nothing moves current.
                 State::Arming if drive.awaits_comms() => self.line.raise(),
                 // The drive has disarmed by itself; its status has the cause.
                 State::Faulted | State::Disarmed if self.was_armed => self.release(),

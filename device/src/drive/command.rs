@@ -33,7 +33,7 @@ pub struct Inputs {
     /// The current, A, positive towards growing angle: that of the loop. `None`
     /// if its converter has no result.
     pub current_a: Option<f32>,
-    /// The same by a shunt, an amplifier and a converter of its own, which
+    /// The current, A, by a shunt, an amplifier and a converter of its own, which
     /// nothing but checks uses.
     pub monitor_a: Option<f32>,
     /// Time since the last call, by another timer than the one that calls, µs.
@@ -61,7 +61,7 @@ pub struct Outputs {
     pub enable: bool,
     /// The bridge: floating at once, or driven from the next PWM period on.
     pub bridge: Bridge,
-    /// The same as a share of the supply's voltage, −1 to 1, rounded.
+    /// Voltage of the bridge as a share of the supply's, −1 to 1, rounded.
     pub duty: f32,
     /// The bridge of the vibration actuator's coil.
     pub coil: CoilOutput,
@@ -88,7 +88,7 @@ pub struct Command {
     overload: Overload,
     /// The coil has something to do.
     has_coil: bool,
-    /// It played a chirp in this tick.
+    /// The coil played a chirp in this tick.
     has_chirped: bool,
     /// The bridge was driven in the previous tick.
     was_driven: bool,
@@ -166,7 +166,7 @@ impl Command {
         self.overload.change(&plan.overload);
         self.coil.change(plan.coil);
         if plan.coil.is_none() {
-            // It would go on with the next actuator.
+            // A chirp would go on with the next actuator.
             (self.chirp, self.has_chirped) = (None, false);
         }
         self.has_coil = self.coil.is_in_use();
@@ -179,8 +179,8 @@ impl Command {
         self.revision
     }
 
-    /// The same for comms: none if it is of another boot of it, which may have had the same
-    /// number for something else.
+    /// Active revision for comms: none if another boot of comms sent it, which may have had the
+    /// same number for something else.
     pub fn known_revision(&self) -> Revision {
         if self.safety.comms_start() == Some(self.sent_by) {
             self.revision

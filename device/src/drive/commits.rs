@@ -215,7 +215,7 @@ mod tests {
         // A newer revision has taken over; the rest of the older one is stale.
         wire.whole(5, &old);
         assert_eq!(wire.take(), None);
-        // The same number with other values, from before a restart of comms.
+        // A commit of the same number with other values, from before a restart of comms.
         let mut wire = Wire::new();
         wire.piece(5, &old, 0);
         let mut index = 1;

@@ -93,7 +93,7 @@ impl Rendered {
 pub struct Turn {
     /// Number of the tick, its lowest 32 bits.
     pub tick: u32,
-    /// It ends a block of telemetry: after it is the time to apply parameters.
+    /// The tick ends a block of telemetry: after it is the time to apply parameters.
     pub ends_block: bool,
     /// Torque is applied.
     pub is_armed: bool,
@@ -279,7 +279,7 @@ mod tests {
         }
     }
 
-    /// It is written where `command_motor` does not read.
+    /// The next result is written where `command_motor` does not read.
     #[test]
     fn the_result_before_stays_whole_while_the_next_is_shown() {
         let exchange = Exchange::new(0);

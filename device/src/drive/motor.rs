@@ -169,7 +169,7 @@ impl Motor {
         }
     }
 
-    /// Its coefficients.
+    /// The coefficients in force.
     pub fn plan(&self) -> &MotorPlan {
         &self.plan
     }

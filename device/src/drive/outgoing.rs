@@ -72,7 +72,7 @@ pub fn first_phases(block: &Block) -> Option<&[EffectPhases; FIRST_PHASES]> {
     block.phases.first_chunk()
 }
 
-/// Its last phases.
+/// The last phases of a block.
 pub fn last_phases(block: &Block) -> Option<&[EffectPhases; LAST_PHASES]> {
     block.phases.last_chunk()
 }

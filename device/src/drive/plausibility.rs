@@ -89,7 +89,7 @@ const TABLE: [Check; CHECKS] = [
 
 const _: () = assert!(TABLE[8].most as u32 == LOST_TICKS * TICK as u32);
 
-/// Its place in the table.
+/// Place of the current mismatch in the table.
 const MISMATCH: usize = 10;
 
 /// The conditions that hold in a tick, a bit each, in the order of [`TABLE`]; the highest
@@ -138,7 +138,7 @@ pub struct Observation {
     pub torque_is_finite: bool,
     /// The current without the sensor's offset, A.
     pub current_a: Option<f32>,
-    /// The same of the monitor.
+    /// Current of the monitor without its offset, A.
     pub monitor_a: Option<f32>,
     /// Voltage, current and motion contradict each other over some ticks.
     pub emf_contradicts: bool,

@@ -106,7 +106,7 @@ pub struct MotorPlan {
     pub current_loop: CurrentLoop<f32>,
     /// Torque at the joint for one ampere, N·m/A, and V·s/rad.
     pub joint_constant: f32,
-    /// Its reciprocal, A/N·m and rad/(V·s).
+    /// Reciprocal of the joint constant, A/N·m and rad/(V·s).
     pub per_joint_constant: f32,
     /// Assumed resistance of the winding, Ω.
     pub resistance_ohm: f32,
@@ -338,7 +338,7 @@ fn fallback() -> Result<Validated<Settings>, ValueError> {
     Ok(Settings::default().validate()?)
 }
 
-/// The same joint without torque.
+/// Coefficients of this joint without torque.
 fn silent(settings: &Validated<Settings>) -> Result<StepCoefficients<f32>, SettingsError> {
     let mut silent = **settings;
     silent.parameters.kinetic_torque_nm = 0.0;

@@ -16,9 +16,9 @@ const OUTSIDE_TICKS: u32 = 20;
 /// Coefficients of the range of motion.
 #[derive(Clone, Copy, Debug)]
 pub struct RangePlan {
-    /// Its end in extension, counts from the angle's zero.
+    /// End of the range in extension, counts from the angle's zero.
     pub least: i32,
-    /// Its end in flexion.
+    /// End of the range in flexion.
     pub most: i32,
     /// Share of the torque for a count.
     pub share_per_count: f32,

@@ -10,7 +10,7 @@
 //!      └──────────────────────────────────┘─────────────┘
 //! ```
 //!
-//! It runs at the highest priority, in every tick, so no task that hangs or is
+//! The state machine runs at the highest priority, in every tick, so no task that hangs or is
 //! late can keep the torque on.
 
 use crate::counters::Counters;

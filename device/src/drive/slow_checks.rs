@@ -10,7 +10,7 @@ const LOW_READINGS: u32 = 20;
 const HOT_READINGS: u32 = 667;
 const OFF_READINGS: u32 = 20;
 
-/// The same of a voltage that is too high.
+/// Consecutive readings of a voltage that is too high until the fault.
 const HIGH_READINGS: u32 = 4;
 
 /// Ticks without any reading until the fault.
@@ -19,7 +19,7 @@ const MISSING_TICKS: u32 = 60;
 /// A reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum SlowInput {
-    /// Its converter has no result.
+    /// No reading: the converter has no result.
     #[default]
     None,
     /// Voltage of the motor's supply, V.

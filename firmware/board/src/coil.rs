@@ -19,7 +19,7 @@
 //! | PC8, PC9 | CH3, CH4 | IN1, IN2 |
 //! | PA6 | BKIN | nFAULT, low; a broken wire is low, too |
 //!
-//! Its nSLEEP is both enable lines, by a gate: no pin. A break turns both inputs low
+//! The driver's nSLEEP is both enable lines, by a gate: no pin. A break turns both inputs low
 //! without the program, until the program lets it sleep. Break and idle levels are
 //! locked until the next reset. An actuator that is not used costs one test.
 

@@ -16,7 +16,7 @@ use stm32f4xx_hal::pac::{IWDG, Peripherals};
 use stm32f4xx_hal::prelude::*;
 use usb_device::bus::UsbBusAllocator;
 
-/// Its parts.
+/// Parts of the board of comms.
 pub struct CommsBoard {
     /// Reset cause and start counter.
     pub start: Start,

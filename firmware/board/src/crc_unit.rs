@@ -1,6 +1,6 @@
 //! The CRC unit, for checksums of frames.
 //!
-//! It divides by the polynomial of our checksum, highest bit first, and begins
+//! The unit divides by the polynomial of our checksum, highest bit first, and begins
 //! with all ones (RM0090 4.3). Ours goes lowest bit first and on from any
 //! register: so bits are reversed on the way in and out, and the first word
 //! carries the difference of the registers.

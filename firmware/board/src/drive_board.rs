@@ -17,7 +17,7 @@ use crepitus_protocol::management::{Identity, Role};
 use stm32f4xx_hal::pac::{IWDG, Peripherals};
 use stm32f4xx_hal::prelude::*;
 
-/// Its parts.
+/// Parts of the drive's board.
 pub struct DriveBoard {
     /// Reset cause and start counter.
     pub start: Start,

@@ -57,7 +57,7 @@ impl MiddleOfTick {
             .cnt()
             .write(|w| w.cnt().set(COUNTS / 2 + CONVERTER_EARLY));
         timer.ccr1().write(|w| w.ccr().set(CONVERSION));
-        // Its overflow starts the converters, its first channel the task.
+        // The timer's overflow starts the converters, its first channel the task.
         timer.cr2().write(|w| w.mms().update());
         timer.dier().write(|w| w.cc1ie().set_bit());
         Self(timer)

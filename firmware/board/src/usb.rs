@@ -16,7 +16,7 @@ pub const PACKET_WORDS: usize = 64;
 /// Digits of a serial number.
 pub const DIGITS: usize = 24;
 
-/// Its three register blocks.
+/// The controller's three register blocks.
 pub type Blocks = (OTG_FS_GLOBAL, OTG_FS_DEVICE, OTG_FS_PWRCLK);
 
 /// The bus.

@@ -1,10 +1,10 @@
 //! The watchdog, and the per-task check-in flags.
 //!
-//! It is fed by a task once all tasks have checked in, and only if the idle
+//! A task feeds the watchdog once all tasks have checked in, and only if the idle
 //! loop, which may prepare parameters for some milliseconds, has checked in
 //! within its timeout.
 //!
-//! It has its own oscillator of 17 to 47 kHz: 20 ms are 13.6 to 37.6 ms. A
+//! The watchdog has its own oscillator of 17 to 47 kHz: 20 ms are 13.6 to 37.6 ms. A
 //! debugger that halts the core does not halt the watchdog: a motor must not
 //! stay driven at a breakpoint.
 
@@ -74,7 +74,7 @@ impl Watchdog {
     /// Starts the watchdog; only a reset stops it. The idle loop has to check
     /// in within `idle_timeout_runs` runs of the feeding task.
     ///
-    /// Its registers take some of its own clocks to load, so the first period
+    /// The watchdog's registers take some of its own clocks to load, so the first period
     /// may be the longest, half a second.
     pub fn start(timer: IWDG, idle_timeout_runs: u32) -> Self {
         timer.kr().write(|w| w.key().start());

@@ -10,7 +10,7 @@ use rtic::Mutex;
 /// The resource of `command_motor`: its state and its plan, behind one lock.
 pub struct Commanding {
     pub command: Command,
-    /// Its half of the plan that `idle` has stored.
+    /// `command_motor`'s half of the plan that `idle` has stored.
     pub plan: Option<CommandPlan>,
 }
 

@@ -160,7 +160,7 @@ impl<F: Real> CurrentLoop<F> {
         })
     }
 
-    /// The same loop with this share of the supply's voltage as its largest.
+    /// Returns the loop with this share of the supply's voltage as its largest.
     #[must_use]
     pub fn with_largest_duty(self, share: F) -> Self {
         Self {

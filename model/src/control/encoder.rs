@@ -11,7 +11,7 @@
 //! Ω ← Ω + (1 − r)²/h · e                  lag ← r²·e
 //! ```
 //!
-//! It has no lag at constant speed, needs no absolute angle, and its noise is
+//! The observer has no lag at constant speed, needs no absolute angle, and its noise is
 //! one count over about 1/(2π·f_b) of time.
 
 use crate::joint::{SettingsError, ShaftStep};
@@ -92,7 +92,7 @@ impl<F: Real> EncoderReader<F> {
         })
     }
 
-    /// The same reader at another count, with a settled estimate of
+    /// Returns the reader at another count, with a settled estimate of
     /// `omega_rad_s`: cheap, where [`Self::new`] is not.
     #[must_use]
     pub fn restarted(self, count: i32, omega_rad_s: F) -> Self {

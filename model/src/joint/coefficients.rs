@@ -395,7 +395,7 @@ mod tests {
 
     #[test]
     fn equal_is_a_matter_of_proportion() {
-        // The same object in units a thousand times larger or smaller.
+        // One object in units a thousand times larger or smaller.
         for ts in [1e-4, 0.4, 1e3] {
             for (gap, touches) in [(1e-10, true), (1e-8, false)] {
                 let mut settings = Settings::default();

@@ -27,7 +27,7 @@ pub struct Event<F> {
 }
 
 impl<F: Real> Event<F> {
-    /// The same event in f64.
+    /// Returns the event in f64.
     pub fn to_f64(&self) -> Event<f64> {
         Event {
             kind: self.kind,

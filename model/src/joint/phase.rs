@@ -47,9 +47,9 @@ impl Sense {
 /// Phase of the imaginary object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// It moves with the shaft.
+    /// The object moves with the shaft.
     Stick,
-    /// It slides against the shaft.
+    /// The object slides against the shaft.
     Slip(Sense),
 }
 

@@ -95,7 +95,7 @@ pub enum SettingsError {
     },
     /// The rung of the ladder has no meaning under the convention.
     Solver {
-        /// Its name.
+        /// Name of the rung.
         solver: &'static str,
         /// Reason.
         reason: &'static str,

@@ -68,7 +68,7 @@ impl<F: Real> Ticks<F> {
         }
     }
 
-    /// The same time in ticks of another length, `ratio` of them in one of these; computed in f64.
+    /// This time in ticks of another length, `ratio` of them in one of these; computed in f64.
     #[must_use]
     pub fn stretched(self, ratio: f64) -> Self {
         let ticks = f64::from_whole(self.whole) + self.fraction.to_f64();

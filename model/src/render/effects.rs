@@ -69,7 +69,7 @@ pub struct EffectSpec {
     pub name: &'static str,
     /// Description of its contribution.
     pub adds: &'static str,
-    /// Its state variables.
+    /// State variables of the effect.
     pub states: &'static [&'static str],
     /// Column of a trace: what it adds.
     pub column: &'static str,
@@ -77,15 +77,15 @@ pub struct EffectSpec {
     pub unit: &'static str,
     /// Title of the chart of it.
     pub title: &'static str,
-    /// Its phases, if it has several.
+    /// Phases of the effect, if it has several.
     pub phases: Option<PhaseSpec>,
     /// Effects without which it has no meaning.
     pub needs: &'static [Need],
-    /// Its parameters.
+    /// Parameters of the effect.
     pub parameters: &'static [ParameterSpec],
-    /// Its choices.
+    /// Choices of the effect.
     pub choices: &'static [Choice],
-    /// Its owner.
+    /// Owner of the effect.
     pub of: Owner,
     /// Prefixes of the names of parameters that belong to a side. In a scene a
     /// name without a prefix stands for all sides.
@@ -105,7 +105,7 @@ pub enum Owner {
 /// An effect that another one needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Need {
-    /// Its name.
+    /// Name of the effect that is needed.
     pub effect: &'static str,
     /// Reason why it is needed.
     pub why: &'static str,
@@ -142,7 +142,7 @@ impl Timing {
 pub struct Tick<'a, F> {
     /// The joint's velocity as far as known, rad/s.
     pub omega_rad_s: F,
-    /// Its travel since the last sample that was taken, rad; without a good one none.
+    /// The joint's travel since the last sample that was taken, rad; without a good one none.
     pub travel_rad: F,
     /// Motion of the joint that symptoms may believe; `None` without a good sample.
     pub travel: Option<&'a Travel<F>>,
@@ -233,7 +233,7 @@ pub enum Target {
 
 /// The law of an effect, with its state.
 pub trait DeviceEffect<F: Real>: Sized {
-    /// Its parameters.
+    /// Parameters of the effect.
     type Settings;
 
     /// Part of the law that a commit replaces.
@@ -243,7 +243,7 @@ pub trait DeviceEffect<F: Real>: Sized {
     /// [`Faded`] or [`Outliving`].
     type Switched: Switched<F, Self>;
 
-    /// Its description.
+    /// Description of the effect.
     const SPEC: EffectSpec;
 
     /// Whether it renders a disorder: its torque is then part of the model's.

@@ -63,7 +63,7 @@ pub struct Gap<F> {
 }
 
 impl<F: Real> Gap<F> {
-    /// Its steps, along a straight line of the velocity that meets both ends,
+    /// Steps of the gap, along a straight line of the velocity that meets both ends,
     /// each with the ticks before it.
     #[inline]
     pub fn steps(&self) -> impl Iterator<Item = (F, ShaftStep<F>)> {

@@ -61,7 +61,7 @@ impl<F: Real> Limits<F> for TorqueLimits<F> {
             return;
         }
         let most_nm = if self.allowance_nm > self.most_nm {
-            // It was lowered, and is followed as torque is: no jolt.
+            // The limit was lowered, and is followed as torque is: no jolt.
             shown.settling = true;
             (self.allowance_nm - self.slew_nm).at_least(self.most_nm)
         } else {

@@ -134,9 +134,9 @@ pub struct Travel<F> {
     pub omega_end_rad_s: F,
     /// b, rad.
     pub bend_rad: F,
-    /// Its time in ticks: more than one after a gap, at most [`MOST_TICKS`].
+    /// Time of the travel in ticks: more than one after a gap, at most [`MOST_TICKS`].
     pub ticks: u32,
-    /// The same, as a number.
+    /// Time of the travel in ticks, as a number.
     pub length: F,
     /// Angle of a count, rad.
     pub rad_per_count: F,
@@ -153,7 +153,7 @@ impl<F: Real> Travel<F> {
         }
     }
 
-    /// The same of numbers that a joint can have.
+    /// The travel, if its numbers are those that a joint can have.
     #[inline]
     pub fn plausible(input: &Checked<F>, to: &Position<F>, scale: &Scale<F>) -> Option<Self> {
         Self::of(input, to, scale).filter(Self::is_plausible)
@@ -261,7 +261,7 @@ pub fn rise<F: Real>(slope: F, bend: F, missing: F) -> F {
     if sum > F::ZERO {
         (F::TWO * missing / sum).at_least(F::ZERO).at_most(F::ONE)
     } else {
-        // It does not rise: the threshold is met as the tick ends.
+        // No rise: the threshold is met as the tick ends.
         F::ONE
     }
 }
@@ -437,7 +437,7 @@ pub(crate) mod tests {
     fn a_rise_is_found_and_always_a_share_of_the_tick() {
         assert_eq!(rise(2.0, 0.0, 1.0), 0.5);
         assert!((rise(1.0, 1.0, 0.75) - 0.5).abs() < 1e-15);
-        // It turns before: never later than the end.
+        // A motion that turns before: never later than the end.
         assert_eq!(rise(0.0, 0.0, 1.0), 1.0);
         assert_eq!(rise(0.0, 0.0, 0.0), 1.0);
         assert_eq!(rise(-1.0, 0.0, 1.0), 1.0);

@@ -46,7 +46,7 @@ struct Slip<F> {
     sense: Sense,
     /// Fraction of its last tick at which it ends; while it is open, that at which it began.
     end_fraction: F,
-    /// It began in the step before, and its end is not known yet.
+    /// The slip began in the step before, and its end is not known yet.
     is_open: bool,
     /// Time from its anchor, where x and v are known, to its end.
     duration: Ticks<F>,
@@ -266,7 +266,7 @@ impl<F: Real, L: Locate<F, Shape = Linear>> Frozen<F, L> {
             v: omega,
             limit_rad: a.static_angle_rad,
         };
-        // It lasts half a period at least.
+        // The slip lasts half a period at least.
         let is_long = a.period.whole >= SHORT_PERIOD;
         self.ticks_left = if is_long { 0 } else { slip.close(a) };
         self.state = State::Slip(slip);
@@ -281,7 +281,7 @@ struct Place<F> {
     delta_phi_rad: F,
     /// Time since its start, s.
     from_s: F,
-    /// The same as a fraction of it.
+    /// That time as a fraction of the step.
     from_fraction: F,
     events: usize,
 }

@@ -49,7 +49,7 @@ impl<F: Real, V: VelocityShape<F>> StickPath<F, V> {
                     .plus(slope, || F::from_f64(1.0 / 6.0) * time_s * time_s)
     }
 
-    /// The same path, begun `time_s` later.
+    /// The path, begun `time_s` later.
     #[must_use]
     #[inline]
     pub fn from(&self, time_s: F) -> Self {

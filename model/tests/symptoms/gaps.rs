@@ -341,7 +341,7 @@ fn a_blade_that_has_fallen_obeys_a_commit() {
             ..EffectSettings::default()
         };
         let mut rig = only::<f64>(knife(0.8, 3.0), 70.0);
-        // It falls at 75 deg, from 3.2 N·m to 0.15 of them.
+        // The resistance falls at 75 deg, from 3.2 N·m to 0.15 of them.
         let rest = moved(&mut rig, 70_f64.to_radians(), 1_800 + later);
         let nm = committed(&mut rig, knife(0.2, 0.0), rest);
         assert!(nm <= 0.2, "{nm}");

@@ -197,7 +197,7 @@ fn a_torque_is_held_for_a_millisecond_without_samples_and_then_released() {
 fn a_beat_within_a_gap_has_its_time() {
     let case = cases().swap_remove(6);
     let mut rig = only::<f64>(case.settings, 40.0);
-    // It starts at 2,666.7 ticks, the beat is 1,000 ticks later.
+    // Clonus starts at 2,666.7 ticks, the beat is 1,000 ticks later.
     let motion = motion(&case);
     rig.run(3_665.0 * TICK_S, &motion);
     assert!(rig.words.is_empty());
@@ -212,7 +212,7 @@ fn a_beat_within_a_gap_has_its_time() {
     near(share, 5.0 / 9.0, 1e-6);
 }
 
-/// The same of the start, and of the stretch that ends: what follows them comes when it would.
+/// The start of clonus, and the stretch that ends: what follows them comes when it would.
 #[test]
 fn whatever_a_gap_hides_of_clonus_happens_in_its_time() {
     let case = cases().swap_remove(6);

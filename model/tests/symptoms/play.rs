@@ -57,14 +57,14 @@ fn a_stiffer_spring_keeps_its_torque_and_a_softer_one_its_share() {
         let mut play = stretched();
         play.change(100.0, stiffness, 1.0);
         near(play.torque_nm(), nm, 1e-12);
-        // It goes on from there with the new one.
+        // The play goes on from there with the new stiffness.
         near(to(&mut play, 0.51, 0.51, stiffness), nm, 1e-12);
         near(
             to(&mut play, 0.51, 0.512, stiffness),
             nm + 0.002 * stiffness,
             1e-12,
         );
-        // Its energy does not rise.
+        // The energy of the play does not rise.
         assert!(nm * nm / (2.0 * stiffness) <= 1.0 / 200.0 + 1e-12);
     }
 }
@@ -153,7 +153,7 @@ fn limits_that_a_play_has_yet_to_meet_drag_it_nowhere() {
     let mut told = |change: Change<f64>| words.push(change.word);
     let none = |_| Limits::both(0.0);
     play.follow(&travel, Part::whole(1.0), 100.0, none, &mut told);
-    // It was let go of, and has not turned.
+    // The play was let go of, and has not turned.
     assert_eq!(words, [Word::Slack]);
     play.change(100.0, 100.0, 1.0);
     assert_eq!(play.hold(), Hold::Slack);

@@ -155,7 +155,7 @@ impl Run {
     }
 }
 
-/// The same speed from this angle on, deg and deg/s.
+/// Constant speed from this angle on, deg and deg/s.
 pub(crate) fn ramp(from_deg: f64, deg_s: f64) -> impl Fn(f64) -> (f64, f64) {
     let omega = deg_s.to_radians();
     move |t| (from_deg.to_radians() + omega * t, omega)

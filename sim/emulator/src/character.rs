@@ -5,8 +5,8 @@
 pub struct Character {
     /// End of its stop bit, in units of time.
     pub at: u64,
-    /// Its byte.
+    /// The byte.
     pub byte: u8,
-    /// Its stop bit is invalid.
+    /// The stop bit is invalid.
     pub is_broken: bool,
 }

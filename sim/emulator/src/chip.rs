@@ -260,7 +260,8 @@ impl Chip {
         adcs
     }
 
-    /// Its break, address, bit of its clock, and interrupts: break, update, trigger, compare.
+    /// Adds a timer, by its break, address, bit of its clock, and interrupts: break, update,
+    /// trigger, compare.
     fn add_advanced_timer(
         parts: &mut Vec<Part>,
         nets: &Nets<'_>,

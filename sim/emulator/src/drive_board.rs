@@ -55,7 +55,7 @@ pub const HALF: Time = Time::from_us(25);
 /// Share of the converters' reference per ampere: 33 mΩ, 20 V/V, of 3.3 V.
 const SHARE_PER_A: f64 = 20.0 * 0.033 / 3.3;
 
-/// The same of the coil's: 25 mΩ.
+/// Share of the converters' reference per ampere of the coil: 25 mΩ.
 const COIL_SHARE_PER_A: f64 = 20.0 * 0.025 / 3.3;
 
 /// Faults of the board.

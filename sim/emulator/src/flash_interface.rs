@@ -51,7 +51,7 @@ pub struct FlashRead {
     pub at: u64,
     /// Offset in flash.
     pub offset: u32,
-    /// Its kind.
+    /// Kind of the read.
     pub kind: Kind,
     /// Cycles that the core had to wait.
     pub waits: u64,
@@ -61,7 +61,7 @@ pub struct FlashRead {
 #[derive(Clone, Copy, Debug)]
 struct Prefetch {
     line: u32,
-    /// Its first cycle.
+    /// First cycle of the read.
     begin: u64,
 }
 

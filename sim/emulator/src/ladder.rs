@@ -43,7 +43,7 @@ pub enum LadderError {
     /// The program timed out.
     #[error("the program on the target does not answer: the core is at {pc:#x}")]
     NoAnswer {
-        /// Its program counter.
+        /// Program counter of the core.
         pc: u32,
     },
     /// A step gives other bits than on the host.

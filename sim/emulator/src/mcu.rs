@@ -88,7 +88,7 @@ pub struct Access {
 pub struct Sampling {
     /// The converter, from 1 on.
     pub converter: u32,
-    /// Its input.
+    /// Input of the converter.
     pub channel: u32,
     /// The pin of that, if it has one.
     pub pin: Option<Pin>,

@@ -18,12 +18,12 @@ impl Pin {
         }
     }
 
-    /// Its port, counted from A.
+    /// Port of the pin, counted from A.
     pub const fn port(self) -> usize {
         self.port as usize
     }
 
-    /// Its number in its port.
+    /// Number of the pin in its port.
     pub const fn number(self) -> u32 {
         self.number as u32
     }

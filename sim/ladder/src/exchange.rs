@@ -25,7 +25,7 @@ use core::sync::atomic::Ordering::{Acquire, Relaxed, Release};
 /// stack: a reflex remembers 8 KB, and is moved while it is set up.
 pub const ADDRESS: u32 = 0x2000_c000;
 
-/// Its words on the target: 80 KB.
+/// Words of the block on the target: 80 KB.
 pub const WORDS: usize = 20 << 10;
 
 /// Command: read the plan.

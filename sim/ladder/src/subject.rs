@@ -83,7 +83,7 @@ impl Subject {
         names.get(usize::from(form)).copied()
     }
 
-    /// Its name: of a rung as in scene files, of an effect as in `crepitus
+    /// Name of the subject: of a rung as in scene files, of an effect as in `crepitus
     /// effects`, of others as in the model's documents.
     pub fn name(self) -> &'static str {
         match self {
@@ -105,7 +105,7 @@ impl Subject {
         }
     }
 
-    /// Its index among all.
+    /// Index of the subject among all.
     pub(crate) fn code(self) -> u32 {
         (0..)
             .zip(Self::all())

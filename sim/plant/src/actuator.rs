@@ -12,7 +12,7 @@ pub trait Actuator: Send {
     /// Looks at a solution in which the shaft turns with this mean velocity,
     /// rad/s; see [`Verdict`].
     ///
-    /// It is asked of an actuator whose type is known: one in a box has no
+    /// Only an actuator whose type is known is asked: one in a box has no
     /// modes, and costs no question.
     #[inline]
     fn check(&mut self, _: &Step, _mean_rad_s: impl FnOnce() -> f64) -> Verdict

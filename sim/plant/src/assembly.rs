@@ -15,7 +15,7 @@ use crepitus_model::SettingsError;
 pub struct Listed {
     /// The effect.
     pub effect: &'static Effect,
-    /// Its numbers and choices.
+    /// Numbers and choices of the effect.
     pub given: Given,
 }
 

@@ -34,7 +34,7 @@ pub struct Stretch {
     pub from: f64,
     /// End, as a fraction of the step.
     pub to: f64,
-    /// Its length, s.
+    /// Length of the stretch, s.
     pub length_s: f64,
 }
 

@@ -12,7 +12,7 @@
 //! 2J/h·(w − v) = torque at mid-step,   v ← 2w − v,   φ ← φ + h·w
 //! ```
 //!
-//! It is stable for any stiffness and damps nothing of its own: kinetic and
+//! The rule is stable for any stiffness and damps nothing of its own: kinetic and
 //! elastic energy change by exactly the work of the torques that it used, so
 //! what an effect stores and loses is known to rounding. (Implicit Euler would
 //! be as stable, and add damping ωn·h/2: see the book on what that does to a
@@ -96,7 +96,7 @@ pub struct Step {
     pub load_nm: f64,
     /// Bridge of the actuator on the shell.
     pub coil: Coil,
-    /// It continues from an end of a mode.
+    /// The step continues from an end of a mode.
     pub cut: bool,
 }
 
@@ -120,7 +120,7 @@ pub struct Flow {
 /// A part's verdict on a solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// It holds.
+    /// The solution holds.
     Holds,
     /// A mode did not hold and is another now: fold again.
     Again,

@@ -3,9 +3,9 @@
 /// Bridge of the coil of the actuator on the shell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Coil {
-    /// It holds this voltage, V.
+    /// The bridge holds this voltage, V.
     Driven(f64),
-    /// It sleeps.
+    /// The bridge sleeps.
     #[default]
     Open,
 }

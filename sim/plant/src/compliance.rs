@@ -187,7 +187,7 @@ impl Chain for Compliance {
             .settle(step, &self.inner, &mut next, left, ends_at);
         self.inner = next;
         Settled {
-            // It gives way: the right end does not move at once.
+            // A compliance gives way: the right end does not move at once.
             struck_rad_s: 0.0,
             ..settled
         }

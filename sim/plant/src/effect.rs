@@ -16,11 +16,11 @@ pub struct Effect {
     pub name: &'static str,
     /// Description.
     pub adds: &'static str,
-    /// Its state variables.
+    /// State variables of the effect.
     pub states: &'static [&'static str],
-    /// Its numbers.
+    /// Numbers of the effect.
     pub parameters: &'static [ParameterSpec],
-    /// Its choices by name.
+    /// Choices of the effect by name.
     pub choices: &'static [Choice],
     /// Effects without which it has no meaning.
     pub needs: &'static [Need],

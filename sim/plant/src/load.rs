@@ -8,7 +8,7 @@ use crate::energy_balance::{Account, EnergyBalance};
 pub trait Load: Send {
     /// The effect that it belongs to.
     const NAME: &'static str;
-    /// Its column: the torque, positive where it opposes growing angle.
+    /// Column of the load: the torque, positive where it opposes growing angle.
     const COLUMN: &'static str;
     /// Further columns, which [`Load::write_more`] fills.
     const MORE: &'static [&'static str] = &[];
@@ -23,7 +23,7 @@ pub trait Load: Send {
     /// A step was made, to `next`, with this mean velocity.
     fn moved(&mut self, step: &Step, next: &Body, mean_rad_s: f64);
 
-    /// Its torque on a body at rest, N·m, as a function of the angle, if it
+    /// Torque of the load on a body at rest, N·m, as a function of the angle, if it
     /// has one: a hand that lifts the leg knows it.
     fn weight(&self) -> Option<Weight> {
         None
@@ -51,7 +51,7 @@ pub struct Loaded<L> {
     load: L,
     /// The load's push, with its inertia, as last folded.
     push: Push,
-    /// Its torque in the last step, without that of the inertia, N·m; none
+    /// Torque of the load in the last step, without that of the inertia, N·m; none
     /// before the first.
     mean_nm: Option<f64>,
 }

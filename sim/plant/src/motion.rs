@@ -149,7 +149,7 @@ impl Motion {
         Self::Cycle(Cycle::new(segments.iter().map(of_segment).collect()))
     }
 
-    /// The same motion about another angle: every angle is `by_rad` further.
+    /// Returns the motion about another angle: every angle is `by_rad` further.
     #[must_use]
     pub fn shifted(mut self, by_rad: f64) -> Self {
         let shift = |piece: &mut Piece| match &mut piece.curve {

@@ -71,12 +71,12 @@ impl<A: Actuator> Plant<A> {
         plant
     }
 
-    /// Its actuator.
+    /// The actuator.
     pub fn actuator(&self) -> &A {
         &self.actuator
     }
 
-    /// Its actuator, for commands between two steps.
+    /// The actuator, for commands between two steps.
     pub fn actuator_mut(&mut self) -> &mut A {
         &mut self.actuator
     }

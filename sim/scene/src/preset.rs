@@ -204,7 +204,7 @@ impl Preset {
         })
     }
 
-    /// Its effects, in the order of the table.
+    /// Effects of the preset, in the order of the table.
     pub fn effects(&self) -> impl Iterator<Item = &'static Effect> {
         let joint = self
             .crepitus

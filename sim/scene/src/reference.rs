@@ -58,7 +58,7 @@ pub struct Reference<'a> {
     natural_rad_s: f64,
     impedance: f64,
     piece: Piece,
-    /// Its place in the motion.
+    /// Place of the piece in the motion.
     piece_place: usize,
     time_s: f64,
     /// The shaft now; just after a knot, at it.

@@ -115,7 +115,7 @@ impl Shipped {
 pub struct Source {
     /// The file that errors name, and from which the path of a recording is relative.
     pub file: PathBuf,
-    /// Its text.
+    /// Text of the file.
     pub text: String,
     /// The run that is repeated.
     repeated: Option<Repeated>,

@@ -60,7 +60,7 @@ pub struct SymptomEvent {
     pub word: Word,
     /// Angle of the joint, rad.
     pub angle_rad: f64,
-    /// Its velocity just after, rad/s.
+    /// Velocity of the joint just after, rad/s.
     pub omega_rad_s: f64,
     /// Torque of the effect just before, N·m.
     pub torque_before_nm: f64,

@@ -24,7 +24,7 @@ pub struct Walk<M> {
 /// A part of a step that is split where the motion breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Its length, s.
+    /// Length of the part, s.
     pub length_s: f64,
     /// The motion as it begins, just inside.
     pub from: Body,
@@ -35,7 +35,7 @@ pub struct Part {
 /// A break of the motion within a step, as the shaft of a plant gets to feel it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cut {
-    /// Its time, s.
+    /// Time of the break, s.
     pub time_s: f64,
     /// The shaft just before it.
     pub before: Body,
@@ -66,7 +66,7 @@ impl<M: Borrow<Motion>> Walk<M> {
         }
     }
 
-    /// The same walk for a joint that computes in `F`, to be made by
+    /// The walk for a joint that computes in `F`, to be made by
     /// [`step_or_parts`](Self::step_or_parts) or [`advance_in_parts`](Self::advance_in_parts).
     #[must_use]
     pub fn in_parts<F: Real>(mut self) -> Self {
@@ -127,7 +127,7 @@ impl<M: Borrow<Motion>> Walk<M> {
         }
     }
 
-    /// The same as [`step`](Self::step); `None` if the motion breaks within the step, which
+    /// Makes a [`step`](Self::step); `None` if the motion breaks within the step, which
     /// [`parts`](Self::parts) then has the parts of.
     #[inline]
     pub fn step_or_parts(&mut self) -> Option<(Body, Body)> {
@@ -211,7 +211,7 @@ impl<M: Borrow<Motion>> Walk<M> {
         shaft
     }
 
-    /// The same as [`advance`](Self::advance), split where the motion breaks; adds what the
+    /// Makes an [`advance`](Self::advance), split where the motion breaks; adds what the
     /// plant's shaft made of each break within the step, or as it began, to `cuts`.
     #[inline]
     pub fn advance_in_parts<A: Actuator>(

@@ -150,7 +150,7 @@ fn is_of(effect: &Effect, function: &str) -> bool {
         "crepitus" => "crepitus_model::solver::frozen".to_owned(),
         "encoder" => "crepitus_model::control::encoder".to_owned(),
         "motor" => "crepitus_model::control::current_loop".to_owned(),
-        // Its settings describe the plant's actuator, too.
+        // The settings of `vibration-actuator` describe the plant's actuator, too.
         "vibration-actuator" => {
             "crepitus_model::render::effects::vibration_actuator::VibrationActuator<".to_owned()
         }

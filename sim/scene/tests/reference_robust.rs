@@ -187,7 +187,7 @@ fn a_touch_is_no_event_for_as_long_as_the_shaft_keeps_its_speed() {
     }
 }
 
-/// The same where the search has to find it: a knot that changes nothing takes
+/// A touch is no event where the search has to find it: a knot that changes nothing takes
 /// away the closed form of a steady slip.
 #[test]
 fn a_touch_is_no_event_beyond_a_knot_either() {

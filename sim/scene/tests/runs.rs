@@ -118,7 +118,7 @@ fn energy_balances_to_rounding() {
     let strokes =
         "kind = \"strokes\"\nfrom_deg = 0\nto_deg = 40\npeak_speed_deg_s = 60\npause_s = 0.2";
     let damped = "[effects.crepitus]\nconvention = \"physical\"\ndamping_nms_per_rad = 0.002";
-    // Its slips go on without an event, each with the shaft's velocity of then.
+    // Slips with equal torques go on without an event, each with the shaft's velocity of then.
     let equal = "[effects.crepitus]\nkinetic_torque_nm = 0.2\nstatic_torque_nm = 0.2";
     for solver in [EXACT_EVENTS, REFERENCE] {
         for motion in [ONE_RAD_S, KNEE_PASS, strokes] {

@@ -19,7 +19,7 @@ use std::path::Path;
 /// Scenes of each of the ten forms of a symptom, numbered from zero: the number is the seed.
 const SCENES: u64 = 60;
 
-/// The same in the long mode.
+/// Scenes of each form in the long mode.
 const LONG_SCENES: u64 = 550;
 
 /// Length of a scene, s.

@@ -40,7 +40,7 @@ struct EnableLine {
     read: bool,
     /// Stuck at this level.
     stuck: Option<bool>,
-    /// Its gate lets everything pass.
+    /// The line's gate lets everything pass.
     gate_is_stuck: bool,
 }
 
@@ -68,9 +68,9 @@ pub enum Controller {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Health {
     Runs,
-    /// It hangs; its pins stay as they are.
+    /// The controller hangs; its pins stay as they are.
     Hangs,
-    /// It starts at this tick; its pins are pulled down.
+    /// The controller starts at this tick; its pins are pulled down.
     StartsAt(u64, ResetCause),
 }
 
@@ -126,7 +126,7 @@ pub struct Board {
     comms_has_restarted: bool,
     /// The comparator behind the monitor's amplifier works.
     trips: bool,
-    /// It has opened the bridge, until the drive floats it.
+    /// The comparator has opened the bridge, until the drive floats it.
     comparator_tripped: bool,
     /// The drive's converters work: that of the sensor, and of the monitor.
     converts: [bool; 2],
@@ -437,7 +437,7 @@ impl Board {
                 crash: self.drive_crash,
                 ..drive::Boot::default()
             };
-            // Its defaults were valid at the first start.
+            // The drive's defaults were valid at the first start.
             if let Ok(drive) = Drive::new(&boot) {
                 self.drive = drive;
                 self.drive_health = Health::Runs;

@@ -25,11 +25,11 @@ pub struct Faults {
 /// Fault of one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fate {
-    /// It vanishes.
+    /// The frame vanishes.
     Lost,
-    /// It arrives, and so many ticks later again.
+    /// The frame arrives, and so many ticks later again.
     Again(u64),
-    /// It arrives so many ticks later, and may be overtaken.
+    /// The frame arrives so many ticks later, and may be overtaken.
     Late(u64),
 }
 

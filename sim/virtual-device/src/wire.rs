@@ -29,7 +29,7 @@ pub struct Traffic {
 /// One direction of the link.
 #[derive(Clone, Debug)]
 pub struct Wire {
-    /// Its faults.
+    /// Faults of the wire.
     pub injector: FaultInjector,
     /// Falsification of the sender's blocks: a defect of its program, or
     /// of its memory.
@@ -62,7 +62,7 @@ impl Wire {
         }
     }
 
-    /// Its traffic.
+    /// Traffic of the wire.
     pub fn traffic(&self) -> Traffic {
         self.traffic
     }

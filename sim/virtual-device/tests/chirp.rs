@@ -24,7 +24,7 @@ fn armed() -> Host {
     armed_at(0.0)
 }
 
-/// The same of one that turns.
+/// An armed joint that turns at this speed, and carries the actuator as a vice would.
 fn armed_at(omega_rad_s: f64) -> Host {
     let mut host = Host::new(
         &scene(
@@ -172,7 +172,7 @@ fn it_ends_with_the_torque_for_good() {
         }
         host.run(200);
         assert!(!host.device.board().coil_is_driven(), "stop {stop}");
-        // It does not go on where it was.
+        // The chirp does not go on where it was.
         host.arm();
         for _ in 0..4_000 {
             host.run(1);

@@ -41,7 +41,7 @@ const START_UP_TICKS: [u64; 2] = [2, 240];
 /// millisecond's 20.
 const RESTART_EVERY: usize = 7;
 
-/// The same where a frame fails, too.
+/// Ticks between two such instants where a frame fails, too.
 const RESTART_WITH_FAILURE_EVERY: usize = 67;
 
 /// Ticks after a commit's answer in which a controller still restarts.
@@ -228,7 +228,7 @@ fn frames() -> ([u64; 2], u64) {
     frames_since(run)
 }
 
-/// The same of a commit.
+/// Frames of each wire in a commit without faults, and its ticks.
 fn frames_of_commit() -> ([u64; 2], u64) {
     let mut run = Run::armed();
     let commit = run.commit();
@@ -358,7 +358,7 @@ fn restart(controller: Controller, at: u64, start_up_ticks: u64, case: &str) -> 
     host.say(&arm);
     host.run(at);
     let was_armed = host.device.board().drive().state() == State::Armed;
-    // It knows only a device that does not restart.
+    // The oracle knows only a device that does not restart.
     host.oracle = None;
     let board = host.device.board_mut();
     board.reset_for(controller, ResetCause::Requested, start_up_ticks);
@@ -404,7 +404,7 @@ fn either_controller_may_restart_at_any_time_of_a_commit() {
     assert!(played > 50 && committed > 10 && committed < played);
 }
 
-/// The same where a frame of the commit is lost, comes late or comes again, too.
+/// Restarts in a commit of which a frame is lost, comes late or comes again.
 #[test]
 fn either_controller_may_restart_in_a_commit_of_which_a_frame_fails() {
     let (frames, ticks) = frames_of_commit();
@@ -437,7 +437,7 @@ fn restart_in_commit(
     let (base, proposed) = run.proposal();
     let kept = *run.board().comms().values();
     let host = &mut run.host;
-    // It knows only a device that does not restart.
+    // The oracle knows only a device that does not restart.
     host.oracle = None;
     let request = host.request(Operation::Commit {
         base,
@@ -473,7 +473,7 @@ fn restart_in_commit(
     run.recover();
     let values = *run.board().comms().values();
     if controller == Controller::Comms {
-        // It was not saved.
+        // The commit was not saved.
         assert_eq!(values, kept, "{case}");
     } else {
         let is_kept = values == kept && !is_committed;

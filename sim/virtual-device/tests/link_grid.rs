@@ -202,7 +202,7 @@ impl Cell {
                 10 => {
                     self.host.try_ask(Operation::Disarm, 1);
                 }
-                // It forgets to renew.
+                // The host forgets to renew.
                 11 => self.host.renew_every = None,
                 _ => {}
             }
@@ -236,7 +236,7 @@ impl Cell {
         match answer {
             Some(Ok(Answer::Committed { revision })) => oracle.committed(revision, &values),
             Some(Err(Refusal::Values(error))) => panic!("{error:?} of {values:?}"),
-            // It may still take effect.
+            // The commit may still take effect.
             None | Some(Err(Refusal::Unconfirmed)) => {}
             Some(_) => oracle.withdraw(),
         }

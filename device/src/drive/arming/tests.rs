@@ -122,7 +122,7 @@ fn leaks(of_drive: f32, of_comms: f32, on: Option<bool>) -> ArmingOutput {
     )
 }
 
-/// The same, with what passes of a voltage, with the drive's line on or off.
+/// Arms with gates that let pass what `passes` says of a voltage, with the drive's line on or off.
 fn leaks_by(passes: impl Fn(f32, bool) -> f32, on: Option<bool>) -> ArmingOutput {
     let mut arming = Arming::default();
     let (mut line, mut raw_a) = (false, 0.0);
@@ -165,7 +165,7 @@ fn a_gate_that_does_not_follow_its_line_is_found() {
         let of_comms = |volts: f32, is_on| if is_on { way(volts, 0.0) } else { 0.0 };
         assert_eq!(leaks_by(of_comms, None), failed(Fault::CommsGateStuck));
     }
-    // Its line is on too early, or never.
+    // The line of comms is on too early, or never.
     assert_eq!(leaks(0.0, 0.0, Some(true)), failed(Fault::CommsGateStuck));
     assert_eq!(leaks(0.0, 0.0, Some(false)), failed(Fault::CommsLineOff));
 }

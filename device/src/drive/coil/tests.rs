@@ -305,7 +305,7 @@ fn a_coil_that_takes_more_than_the_command_believes_gets_hot() {
     let (ticks, fault) = rig.until(sine(50.0, 1.8), Some).unwrap();
     assert_eq!(fault, CoilFault::Hot);
     assert!(ticks < 120_000, "{ticks}");
-    // It is as warm when it is cleared at once, and cools while it sleeps.
+    // The coil is as warm when the fault is cleared at once, and cools while it sleeps.
     rig.coil.clear();
     assert!(rig.until(sine(50.0, 1.8), Some).unwrap().0 < 200);
     for _ in 0..100_000 {

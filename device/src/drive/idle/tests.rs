@@ -30,7 +30,7 @@ const PATIENCE_TICKS: u32 = 20_000;
 struct Commit {
     start: u16,
     revision: Revision,
-    /// Its own limit of the torque, N·m; a refused one's is beyond the range.
+    /// Limit of the torque, N·m, of this commit only; of a refused one beyond the range.
     torque_nm: f64,
 }
 
@@ -72,7 +72,7 @@ impl Commit {
 enum Event {
     /// Another commit.
     Commit { is_valid: bool },
-    /// It starts again, with what is saved.
+    /// Comms starts again, with what is saved.
     Restart,
     /// All pieces of this commit, which was sent before, arrive once more: late ones.
     Late { ago: usize },

@@ -193,7 +193,7 @@ impl<F: Real> DeviceEffect<F> for BoneShaping<F> {
             return Err(SettingsError::Step { step_s });
         }
         let omega_n = core::f64::consts::TAU * settings.frequency_hz;
-        // The same oscillator, of an object with one unit of inertia.
+        // The oscillator of an object with one unit of inertia.
         let bone = Oscillator::<F>::of(&Parameters {
             inertia_kg_m2: 1.0,
             stiffness_nm_per_rad: omega_n * omega_n,

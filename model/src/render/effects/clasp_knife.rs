@@ -467,7 +467,7 @@ impl<F: Real> ClaspKnife<F> {
             .follow(travel, part, with.stiffness, limit_nm, on_change)
     }
 
-    /// It collapses after this share of the travel.
+    /// Collapses after this share of the travel.
     #[cold]
     fn collapse(&mut self, fraction: F, travel: &Travel<F>, on_change: &mut impl Hear<F>) -> F {
         let with = self.with;

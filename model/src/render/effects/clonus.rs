@@ -161,7 +161,7 @@ impl<F: Real> Since<F> {
         F::from_whole(u64::from(self.whole)) + self.rest
     }
 
-    /// The same time in ticks of another length, `ratio` of them in one of these.
+    /// This time in ticks of another length, `ratio` of them in one of these.
     fn stretched(&self, ratio: f64) -> Self {
         let ticks = (f64::from(self.whole) + self.rest.to_f64()) * ratio;
         let whole = u32::try_from(ticks.whole()).unwrap_or(u32::MAX);
@@ -405,7 +405,7 @@ impl<F: Real> Clonus<F> {
         }
     }
 
-    /// The same where the joint returns within this tick: only a beat whose time came before.
+    /// Begins the next beat in a tick in which the joint returns: only if its time came before.
     #[inline]
     fn pace_until_stop(&mut self, travel: &Travel<F>, on_change: &mut impl Hear<F>) {
         let late = self.interval_since.ticks() - self.interval;

@@ -437,7 +437,7 @@ impl<F: Real> Cogwheel<F> {
         let moves = if F::IS_SINGLE || flicker_rad > F::ZERO {
             moved_rad.abs() > flicker_rad || travel.delta_rad.abs() > flicker_rad
         } else {
-            // Its true velocity is known.
+            // The joint's true velocity is known.
             travel.omega_start_rad_s != F::ZERO || travel.omega_end_rad_s != F::ZERO
         };
         // At rest one give is felt, then there is silence.

@@ -39,7 +39,7 @@
 //! share·friction·min(1, Ω̇·d/fade) over a travel of Ω̇·d²/2 for a delay d; at
 //! 200 rad/s² and 0.1 ms that is 0.16 N·m over 1 µrad.
 //!
-//! It is wrong where the gear has less friction than share·friction: a warm
+//! The compensation is wrong where the gear has less friction than share·friction: a warm
 //! gear, another motor, a motion inside the backlash. Then the joint pushes a
 //! moving leg with the difference, up to share·friction. Set the least friction
 //! that is ever measured.

@@ -62,7 +62,7 @@ impl Phases {
         Self(self.0 | (number & place.mask).unbounded_shl(place.shift))
     }
 
-    /// The same by the names of effect and phase; `None` if there is none.
+    /// Adds the phase of one more effect, by the names of both; `None` if there is none.
     #[must_use]
     pub fn with_named(self, effect: &str, phase: &str) -> Option<Self> {
         let spec = SPECS.iter().find(|spec| spec.name == effect)?;

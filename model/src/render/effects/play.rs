@@ -6,7 +6,7 @@
 //!                      T < ℓ:  T = ℓ, a = φ − ℓ/σ       "lower"
 //! ```
 //!
-//! It needs no velocity, has no chatter at rest, and is exact at a tick's end if
+//! The play needs no velocity, has no chatter at rest, and is exact at a tick's end if
 //! the motion in the tick is monotone and no limit is steeper than σ. A limit
 //! that falls takes the torque with it, one that rises changes nothing. Where a
 //! limit jumps inside a tick, follow up to there with the old limits, then on with
@@ -28,14 +28,14 @@ use crate::render::position::{Position, Travel};
 /// State of the spring.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hold {
-    /// Its torque is within the limits.
+    /// Torque within the limits.
     #[default]
     Elastic,
-    /// It is dragged at the upper limit.
+    /// Dragged at the upper limit.
     Upper,
-    /// It is dragged at the lower limit.
+    /// Dragged at the lower limit.
     Lower,
-    /// It is dragged at a limit of zero: it has no torque.
+    /// Dragged at a limit of zero: no torque.
     Slack,
 }
 
@@ -49,7 +49,7 @@ pub struct Limits<F> {
 }
 
 impl<F: Real> Limits<F> {
-    /// The same in both directions.
+    /// Equal limits in both directions.
     #[inline]
     pub fn both(nm: F) -> Self {
         Self {
@@ -138,7 +138,7 @@ impl<F: Real> Play<F> {
         // pulls, and none exceeds its cap.
         self.allowed_nm = self.now_nm;
         self.slew_nm = slew_nm;
-        // It has no place on limits that it has not met yet.
+        // A play has no place on limits that it has not met yet.
         if self.hold != Hold::Slack {
             self.hold = Hold::Elastic;
         }
@@ -175,8 +175,8 @@ impl<F: Real> Play<F> {
         self.follow_to(&end, (travel, part), stiffness, limits, on_change)
     }
 
-    /// The same where the part's end is known already. Its shares matter only to somebody
-    /// who listens, and in f64.
+    /// Follows the joint where the part's end is known already. The part's shares matter only to
+    /// somebody who listens, and in f64.
     #[inline]
     pub fn follow_to<O: Hear<F>>(
         &mut self,

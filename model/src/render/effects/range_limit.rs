@@ -273,7 +273,7 @@ impl<F: Real> Wall<F> {
         };
     }
 
-    /// Its torque, against growing `sense`·φ, N·m.
+    /// Follows the joint: the wall's torque, against growing `sense`·φ, N·m.
     #[expect(
         clippy::inline_always,
         reason = "twice in the same task, which else passes its numbers through memory: 110 cycles"

@@ -428,7 +428,7 @@ mod tests {
                 for fraction in [0.1, 0.5, 0.9] {
                     let found = threshold.rises_to(beyond(fraction), start, &travel);
                     assert!((found - fraction).abs() < 1e-6, "{found} {fraction}");
-                    // The same motion seen from the other side falls.
+                    // The motion seen from the other side falls.
                     let other = Threshold {
                         sense: -sense,
                         ..threshold

@@ -197,8 +197,8 @@ impl ClaspKnifeSettings {
         (self.trigger == 0).then(|| self.release_deg.to_radians())
     }
 
-    /// Its largest torque at an angle while it builds, N·m, signed; nothing before its
-    /// onset.
+    /// Largest torque of the limit at an angle while it builds, N·m, signed; nothing before
+    /// the onset.
     pub fn building_nm(&self, angle_rad: f64) -> f64 {
         let beyond_rad = self.sense() * (angle_rad - self.onset_deg.to_radians());
         if beyond_rad < 0.0 {

@@ -12,17 +12,17 @@ crate::named! {
     pub enum Word {
         /// The joint enters the wall.
         Contact => "contact",
-        /// It leaves it.
+        /// The joint leaves the wall.
         Leave => "leave",
         /// The torque has reached its largest.
         Cap => "cap",
-        /// It falls below it again.
+        /// The torque falls below its largest again.
         Uncap => "uncap",
         /// A catch.
         Catch => "catch",
-        /// It gives way.
+        /// The resistance gives way.
         Give => "give",
-        /// It can catch again.
+        /// The resistance can catch or build up again.
         Rearm => "rearm",
         /// Torque begins to build up.
         Onset => "onset",
@@ -44,15 +44,16 @@ crate::named! {
         Snap => "snap",
         /// A play is dragged along.
         Flow => "flow",
-        /// It stops being dragged.
+        /// A play stops being dragged.
         Turn => "turn",
-        /// Its torque has fallen to zero.
+        /// The torque of a play has fallen to zero.
         Slack => "slack",
-        /// It takes up torque again.
+        /// A play takes up torque again.
         Take => "take",
         /// A beat or a reflex is over, of which the tank held a part back.
         Weak => "weak",
-        /// The same, of which less than half the height was shown: too little to count.
+        /// A beat or a reflex is over, of which less than half the height was shown: too little
+        /// to count.
         Unfelt => "unfelt",
     }
 }
@@ -133,7 +134,7 @@ pub trait Hear<F> {
         }
     }
 
-    /// The same; when it was is found out only if somebody needs it.
+    /// Tells of an event; when it was is found out only if somebody needs it.
     #[inline]
     fn tell(&mut self, word: Word, when: impl FnOnce() -> F, before_nm: F, after_nm: F) {
         if Self::LISTENS {
@@ -188,7 +189,7 @@ impl<F: Real, O: Observe<F>> Hear<F> for Heard<'_, F, O> {
 pub struct ClinicWords {
     /// Title above its charts.
     pub title: &'static str,
-    /// Its states, in the order of the numbers of its phases; the first one is at
+    /// States of the symptom, in the order of the numbers of its phases; the first one is at
     /// rest.
     pub states: &'static [&'static str],
     /// Changes from one state to another, by an event with this name.
@@ -201,11 +202,11 @@ pub struct ClinicWords {
 /// a report and the supervision by comms are made of the sums.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
-    /// Its largest torque, but for what grows with the angle, N·m.
+    /// Largest torque, but for what grows with the angle, N·m.
     pub torque_nm: f64,
     /// Slope of the torque that grows with the angle without end, N·m/rad.
     pub slope_nm_per_rad: f64,
-    /// Its stiffness where it is a spring, N·m/rad.
+    /// Stiffness where the symptom is a spring, N·m/rad.
     pub stiffness_nm_per_rad: f64,
     /// Whether it is a wall that a hand presses against: what keeps it quiet is the gear's
     /// friction.
@@ -217,16 +218,16 @@ pub trait Law: Sized {
     /// The numbers that it computes with.
     type Real: Real;
 
-    /// Its parameters.
+    /// Parameters of the symptom.
     type Settings;
 
     /// Part of the law that a commit replaces; the default is that of a law that is off.
     type Coefficients: Copy + core::fmt::Debug + Default + PartialEq;
 
-    /// Its description.
+    /// Description of the symptom.
     const SPEC: EffectSpec;
 
-    /// Its words in a report.
+    /// Words for the symptom in a report.
     const WORDS: ClinicWords;
 
     /// Checks ranges, and what holds between the settings.
@@ -260,10 +261,10 @@ pub trait Law: Sized {
         on_change: &mut impl Hear<Self::Real>,
     ) -> Self::Real;
 
-    /// Its torque now, N·m.
+    /// The symptom's torque now, N·m.
     fn torque_nm(&self) -> Self::Real;
 
-    /// Its torque on a joint that rests at a place, N·m: of most none.
+    /// The symptom's torque on a joint that rests at a place, N·m: of most none.
     fn resting_nm(&self, _place: &Position<Self::Real>) -> Self::Real {
         Self::Real::ZERO
     }

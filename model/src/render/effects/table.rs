@@ -197,7 +197,7 @@ macro_rules! effects {
             /// No contribution.
             pub const NONE: Self = Self { $($effect: F::ZERO,)* };
 
-            /// The same in f64.
+            /// Converts to f64.
             pub fn to_f64(&self) -> Added<f64> {
                 Added { $($effect: self.$effect.to_f64(),)* }
             }
@@ -328,8 +328,8 @@ macro_rules! effects {
             ) {
                 // The input's check has seen to it that its numbers are a joint's.
                 let travel = Travel::of(input, &seen.place, &self.scale);
-                // Its address, if it were known, would be in every access to what lies beyond
-                // the reach of a load, and most of it does.
+                // The address of `self`, if it were known, would be in every access to what lies
+                // beyond the reach of a load, and most of it does.
                 let this = core::hint::black_box(self);
                 let mut besides = Besides::NOTHING;
                 let on = this.on;

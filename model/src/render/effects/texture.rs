@@ -6,7 +6,7 @@
 //! −ℓ = Tb + Hlast·max(0, 1 − (φ − φlast)/(wλ))                  T = play(σ, ℓ … u)
 //! ```
 //!
-//! The same click at the same angle there and back: Ω/λ *snaps* a second, mean torque
+//! Clicks come at the same angles there and back: Ω/λ *snaps* a second, mean torque
 //! Tb + w·(Tp − Tb)/2. Stick-slip alone has one pitch. With patches, P apart, of every N = P/λ
 //! asperities only the first M = q·N are there: bone creaks on bone, and then glides again.
 //!

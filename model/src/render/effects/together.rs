@@ -23,7 +23,7 @@ impl EffectSettings {
         Ok(())
     }
 
-    /// The same of a knee on any brace: what the brace has besides its motor is not known.
+    /// Checks a knee on any brace: what the brace has besides its motor is not known.
     ///
     /// # Errors
     /// The first rule that is broken.

@@ -256,7 +256,7 @@ struct Follower<F> {
     damping_s: F,
 }
 
-/// Its state.
+/// State of a follower.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Following<F> {
     input: F,

@@ -174,7 +174,7 @@ impl Part {
         self.peripheral.advance_to(tick);
     }
 
-    /// Its clock has changed its rate: the next tick is one period away.
+    /// The part's clock has changed its rate: the next tick is one period away.
     pub(crate) fn rerate(&self, now: u64) {
         self.skip_to(&mut lock(&self.phase), now);
     }

@@ -136,7 +136,7 @@ struct State {
     ccr: u32,
     /// Place of the current conversion, and its end.
     converting: Option<(Place, u64)>,
-    /// Its sampling, if it has not ended.
+    /// Sampling of the current conversion, if it has not ended.
     sampling: Option<Sampling>,
     samplings: Vec<Sampling>,
     sampled: f64,

@@ -123,7 +123,7 @@ impl Brake {
         bdtr & BKE != 0 && is_high == (bdtr & BKP != 0)
     }
 
-    /// Its pin, and the timer.
+    /// Pin of the break, and the timer.
     pub(crate) fn input(&self) -> &Input {
         &self.input
     }
@@ -231,7 +231,7 @@ impl MemOps for Brake {
             EGR if value & BREAK != 0 => self.update(true),
             SR if value & BREAK == 0 => {
                 lock(&self.state).has_broken = false;
-                // It cannot be cleared while it is active.
+                // The flag cannot be cleared while the break is active.
                 self.update(false);
             }
             DIER => self.update_outputs(),

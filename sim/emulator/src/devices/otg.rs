@@ -41,11 +41,11 @@ pub(crate) const BYTES: u32 = 0x4_0000;
 /// Endpoints each way.
 const ENDPOINTS: usize = 4;
 
-/// Its pins, D− and D+, and their function.
+/// Pins of the controller, D− and D+, and their function.
 const PINS: [Pin; 2] = [Pin::new('A', 11), Pin::new('A', 12)];
 const FUNCTION: Mode = Mode::Alternate(10);
 
-/// Its clock.
+/// Clock of the controller.
 const CLOCK_UNITS: u64 = UNITS_PER_S / 48_000_000;
 
 // GAHBCFG, GUSBCFG, GRSTCTL.

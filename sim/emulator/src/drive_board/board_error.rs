@@ -11,7 +11,7 @@ pub enum BoardError {
     Pin {
         /// The pin.
         pin: Pin,
-        /// Its setup.
+        /// Setup of the pin.
         is: PinSetup,
         /// The other end of its wire.
         to: &'static str,

@@ -264,7 +264,7 @@ pub(super) fn phase(mcu: &Stm32f405) -> Option<Time> {
     phase_of(mcu, CR1)
 }
 
-/// The same of the advanced timer at this address.
+/// Time since the advanced timer at this address was at its bottom, if it runs.
 pub(super) fn phase_of(mcu: &Stm32f405, base: u32) -> Option<Time> {
     let control = word(mcu, base);
     if control & CEN == 0 {

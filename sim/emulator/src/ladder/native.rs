@@ -1,4 +1,4 @@
-//! The same program on the host.
+//! The ladder's program on the host.
 
 use super::LadderError;
 use crepitus_ladder::exchange::{

@@ -23,7 +23,7 @@ pub(super) const PARTS: &[Part] = &[
     part("TIM5", 0x4000_0c00, TIMER_32),
     part("ADC1", 0x4001_2000, CONVERTER),
     part("ADC2", 0x4001_2100, CONVERTER),
-    // Its sequence is no configuration: it turns from tick to tick.
+    // The sequence of ADC3 is no configuration: it turns from tick to tick.
     part(
         "ADC3",
         0x4001_2200,

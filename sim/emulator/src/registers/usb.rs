@@ -7,7 +7,7 @@ const KINDS: &[&str] = &["control", "isochronous", "bulk", "interrupt"];
 /// Start and depth of a FIFO, in words.
 const FIFO: &[Field] = &[number("start", 0, 16), number("depth", 16, 16)];
 
-/// Its state, and how far a transfer is, are no configuration: EPENA, NAKSTS,
+/// Bits that are state of an endpoint or a transfer, and no configuration: EPENA, NAKSTS,
 /// EONUM.
 const STATE: u32 = 1 << 31 | 1 << 17 | 1 << 16;
 

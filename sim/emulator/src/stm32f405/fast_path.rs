@@ -44,7 +44,7 @@ struct Context {
     ccr: u32,
     /// The floating-point unit owes no saving of its registers.
     has_floats: bool,
-    /// Its use is noted, for the next exception.
+    /// Use of the floating-point unit is noted, for the next exception.
     notes_floats: bool,
     /// DWT counts cycles.
     is_counted: bool,
@@ -133,7 +133,7 @@ impl FastPath {
             select_stack(&mut registers);
             core.set_regs(registers);
             if context.is_counted {
-                // It does not know of waits.
+                // The library's counter does not know of waits.
                 let cycles = cycles - executor.timing.waits();
                 core.with_sys(|sys| sys.tick_cyccnt(cycles));
             }

@@ -1,4 +1,4 @@
-//! It boots: clocks and timers come up as configured, nothing is used that is
+//! The image boots: clocks and timers come up as configured, nothing is used that is
 //! not there, and two runs are the same.
 
 use crate::host::{Host, examination, image};

@@ -116,7 +116,7 @@ fn a_fault_leaves_registers_stack_and_the_last_ticks() {
     assert_eq!((head.end, head.detail), (End::Fault, at));
     let [pc, lr, sp, xpsr, cfsr, hfsr, _, _] = head.registers;
     assert_eq!(pc, at);
-    // It was to return to what it interrupted.
+    // The handler was to return to what it interrupted.
     assert_eq!(lr & 0xffff_ff00, 0xffff_ff00, "{lr:#x}");
     assert_eq!(xpsr & 0x1ff, u32::from(RENDER));
     assert!(CCM.contains(&sp), "{sp:#x}");
@@ -141,7 +141,7 @@ fn a_task_that_hangs_leaves_the_last_ticks() {
     // `command_motor` went on, without what the other should have rendered.
     let is_late = |tick: &Tick| tick.sample.flags.has(SampleFlags::LATE);
     assert!(last_ticks(&words).iter().all(is_late));
-    // It outlives a restart that is no crash, but not power-off. The board sees pins
+    // The record outlives a restart that is no crash, but not power-off. The board sees pins
     // that are not set up yet.
     host.breaks_board = true;
     host.board.mcu_mut().reset(Reset::Software);
@@ -164,7 +164,7 @@ fn an_interrupt_without_a_handler_leaves_the_stack() {
     }
     let words = read(&mut host);
     let head = Head::of(&words).expect("a record");
-    // Its number is not modelled: the library's ICSR has no VECTACTIVE.
+    // The interrupt's number is not modelled: the library's ICSR has no VECTACTIVE.
     assert_eq!(head.end, End::Unhandled);
     assert!(CCM.contains(&head.registers[2]));
     assert_ne!(head.stack, [0; 16]);

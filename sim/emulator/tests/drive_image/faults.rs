@@ -59,7 +59,7 @@ fn comms_that_hangs() {
     host.board.comms_mut().set_hung(true);
     let halves = host.halves_until_off(limit(Fault::CommsSilent));
     println!("comms hangs: off after {halves} half ticks");
-    // Its own line stays as it was: the drive's is the one that fell.
+    // The line of comms stays as it was: the drive's is the one that fell.
     assert!(host.board.comms_line_is_on());
 }
 

@@ -36,7 +36,7 @@ fn it_arms_and_no_sample_is_late_lost_or_dropped() {
         return;
     };
     assert_eq!(host.board.mcu().peek(REGISTER), Some(SETTINGS));
-    // Its link may have begun in the middle of a frame.
+    // The drive's link may have begun in the middle of a frame.
     let Ok(Answer::Counters(before)) = host.ask(Operation::Counters) else {
         panic!("no counters");
     };

@@ -21,7 +21,7 @@ use std::path::Path;
 pub(crate) enum Flash {
     /// The core never waits.
     ZeroWaitStates,
-    /// It waits as the reference manual says.
+    /// The core waits as the reference manual says.
     Modelled,
 }
 

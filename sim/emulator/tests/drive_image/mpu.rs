@@ -189,7 +189,7 @@ fn comms_can_program_its_parameter_sectors_and_nothing_else() {
         ];
         let at = mcu.program_counter();
         mcu.patch_flash(at, &bytes(&stores.concat()));
-        // It may sleep until its next tick.
+        // The core may sleep until its next tick.
         mcu.run_until(STARTED + Time::from_us(600));
         let is_done = mcu.peek(address) == Some(before & VALUE) && before & VALUE != before;
         let was_reset = !mcu.take_resets().is_empty();

@@ -279,8 +279,8 @@ fn with_the_modelled_flash_too() {
     check(Flash::Modelled);
 }
 
-/// Its link is switched on at any instant of the frames of comms: every millisecond there
-/// are 31 µs of them.
+/// The drive's link is switched on at any instant of the frames of comms: every millisecond
+/// there are 31 µs of them.
 #[test]
 fn whatever_comms_sends_while_it_starts() {
     let Some(image) = image() else { return };

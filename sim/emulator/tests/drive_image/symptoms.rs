@@ -252,7 +252,7 @@ fn tick_of(at: Time) -> u64 {
 
 /// Cycles that a symptom or the actuator adds to each tick of a period.
 pub(crate) fn added(with: &mut Host, without: &mut Host) -> Vec<u64> {
-    // The same ticks of the same joint on the same shaft.
+    // Both hosts at the same ticks of the same joint on the same shaft.
     let [there, here] = [&*with, &*without].map(|host| tick_of(host.board.mcu().now()));
     without.run(there - here);
     let [with, without] = [with, without].map(|host| {

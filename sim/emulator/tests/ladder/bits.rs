@@ -1,4 +1,4 @@
-//! The same bits on the target as on the host.
+//! Equal bits on the target and on the host.
 
 use crate::{ladder, taken};
 use crepitus_ladder::{Plan, Subject};

@@ -78,7 +78,7 @@ fn the_drive_hangs() {
     boards(&mut host).mcu_mut().set_hung(true);
     let ticks = ticks_until_off(&mut host, limit(Fault::DriveSilent), true);
     println!("drive hung: off after {ticks} ticks");
-    // Its watchdog restarts it, and comms has noticed nothing but that.
+    // The drive's watchdog restarts it, and comms has noticed nothing but that.
     let events = run(&mut host, SLOWEST_WATCHDOG_MS + 60);
     assert!(events.contains(&Event::DriveRestarted));
     assert_eq!(resets(&mut host), [vec![Reset::Watchdog], vec![]]);

@@ -1,4 +1,4 @@
-//! The same run twice is the same, to the last bit of both memories.
+//! Repeated runs are equal, to the last bit of both memories.
 
 use crate::host::{arm, connected, run};
 use crepitus_client::Event;

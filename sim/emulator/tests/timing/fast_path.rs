@@ -45,7 +45,7 @@ impl Watch for Steps {
     }
 }
 
-/// The same chip twice: by the library, and with the fast path.
+/// One chip twice: by the library, and with the fast path.
 fn both(chip: impl Fn() -> Stm32f405) -> [Stm32f405; 2] {
     let (mut by_library, fast) = (chip(), chip());
     by_library.observe_ram(&[]);

@@ -172,7 +172,7 @@ fn loads(lines: &[u16]) -> Vec<u16> {
     code.collect()
 }
 
-/// The same in a loop.
+/// Loads of these lines in a loop.
 fn loop_of_loads(lines: &[u16]) -> Vec<u16> {
     let mut code = loads(lines);
     code.extend([NARROW_NOP; 8]);
@@ -240,7 +240,7 @@ fn a_vector_and_the_first_instruction_of_its_handler_are_read() {
     for pair in steps.0.windows(2) {
         if pair[1].pc == handler {
             assert_eq!((pair[0].waits, pair[0].cycles), (5, 12 + 5));
-            // It reads a register of APB1, too: 3.
+            // The handler's first instruction reads a register of APB1, too: 3.
             assert_eq!(pair[1].waits, 5 + 3);
             entries += 1;
         }

@@ -139,7 +139,7 @@ impl Drivetrain {
                 }
                 let friction = self.friction_of(step, body, flow);
                 if friction.abs() > self.limit_nm(step) * (1.0 + 1e-12) {
-                    // It slips against the friction that holding would need.
+                    // The shaft slips against the friction that holding would need.
                     return Err(Mode::Sliding(sense_of(-friction)));
                 }
                 Ok(None)

@@ -10,7 +10,7 @@
 //! T = −F·dh/dφ = F·(a² − b²)·sin φ·cos φ/h        T > 0 opposes growing φ
 //! ```
 //!
-//! It stores −F·h and loses nothing. 60 and 48 mm and 20 N are 0.24 N·m at 45°, 12 mm
+//! The effect stores −F·h and loses nothing. 60 and 48 mm and 20 N are 0.24 N·m at 45°, 12 mm
 //! of stretch; they are estimates.
 //!
 //! The mass that moves along is that of `limb`, at its usual place: of its 0.43 kg·m²

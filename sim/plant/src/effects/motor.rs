@@ -71,7 +71,7 @@ const TABLE: [ParameterSpec; 7] = [
 /// The numbers of a motor without the device's loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorNumbers {
-    /// Its winding, seen from the joint.
+    /// Winding of the motor, seen from the joint.
     pub winding: WindingSettings,
     /// Supply voltage of the bridge, in either direction, V.
     pub supply_v: f64,

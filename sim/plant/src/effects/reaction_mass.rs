@@ -21,7 +21,7 @@
 //! **A bridge that sleeps** leaves the coil open: its current is gone at once, and the
 //! mass rings with c alone.
 //!
-//! It sits on the [shell](super::shell) if there is one, otherwise on what the hand
+//! The actuator sits on the [shell](super::shell) if there is one, otherwise on what the hand
 //! holds; or on the brace, where it does next to nothing for the hand.
 //!
 //! Sources: see [`vibration_actuator`](crepitus_model::render::effects::vibration_actuator),
@@ -305,7 +305,7 @@ impl Load for ReactionMass {
     fn moved(&mut self, step: &Step, next: &Body, mean_rad_s: f64) {
         let h = step.length_s;
         if step.coil == Coil::Open {
-            // Its field goes up in the diodes.
+            // The field of the coil goes up in the diodes.
             self.books.copper += 0.5 * self.henry * self.current_a * self.current_a;
             self.current_a = 0.0;
         }

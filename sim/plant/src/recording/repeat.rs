@@ -1,8 +1,8 @@
 //! A recording of one cycle as a motion without end: the periodic smoothing spline.
 //!
-//! It has the least Σ w (y − f)² + λ ∫ f″² dt of all functions with the period of the cycle, so
-//! it is what [`smooth`](super::smooth) makes of the cycle written many times one after the
-//! other, far from both ends. The last sample is the first of the next cycle: the period is the
+//! The spline has the least Σ w (y − f)² + λ ∫ f″² dt of all functions with the period of the
+//! cycle, so it is what [`smooth`](super::smooth) makes of the cycle written many times one after
+//! the other, far from both ends. The last sample is the first of the next cycle: the period is the
 //! time from the first sample to the last, and φ, Ω and Ω̇ are continuous at the join as at every
 //! other sample.
 //!

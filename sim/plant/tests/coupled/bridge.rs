@@ -116,7 +116,7 @@ fn faster_than_the_supply_an_open_bridge_generates() {
         let beyond_v = (CONSTANT * omega.abs() - AGAINST_V).max(0.0);
         let known = -omega.signum() * beyond_v / OHM;
         assert!((ampere(&rig) - known).abs() < 1e-12, "{share}");
-        // It brakes, and what the supply is given is not more than the work.
+        // The motor brakes, and what the supply is given is not more than the work.
         let torque = rig.get("motor_torque_nm");
         assert!((torque + CONSTANT * known).abs() < 1e-11);
         assert!(rig.joule("motor", "supply") <= 0.0);

@@ -68,7 +68,7 @@ impl Mount {
         )
     }
 
-    /// The same, of the simulated one.
+    /// Torque on the leg per torque on the brace, of the simulated mount.
     fn measured(&self, hertz: f64) -> Complex {
         let mut rig = self.build().at_rest();
         let mut harmonic = Harmonic::default();

@@ -115,7 +115,7 @@ fn a_spring_against_dry_friction_decays_in_a_straight_line() {
     for n in 0..20_000_u32 {
         rig.tick(-8.0 * f64::from(n.min(16_000)) / 16_000.0);
     }
-    // It crept along, so there is some swing left; let it die first.
+    // The mass crept along, so there is some swing left; let it die first.
     assert_eq!(rig.leg().omega_rad_s, 0.0);
     let start = rig.shaft().angle_rad;
     let lost = 2.0 * FRICTION_NM / stiffness;

@@ -94,7 +94,7 @@ fn decades(low: f64, high: f64) -> BoxedStrategy<f64> {
         .boxed()
 }
 
-/// The same, or nothing at all.
+/// Zero, or evenly between two powers of ten.
 fn none_or(low: f64, high: f64) -> BoxedStrategy<f64> {
     prop_oneof![1 => Just(0.0), 3 => decades(low, high)].boxed()
 }

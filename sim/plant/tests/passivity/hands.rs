@@ -98,7 +98,7 @@ fn moves(rng: &mut Rng, stroke_rad: f64, ticks: u32) -> Vec<f64> {
     let mut from_rad = 0.0;
     while travels.len() < ticks as usize {
         let to_rad = stroke_rad * (8.0 * rng.f64() - 4.0);
-        // Its speed peaks at 15/8 of the mean.
+        // The speed of a stroke peaks at 15/8 of the mean.
         let least = 1.875 * (to_rad - from_rad).abs() / (FASTEST_RAD_S * TICK_S);
         let length = f64::from(rng.u32(20..2000)).max(least.ceil());
         let part = |u: f64| u * u * u * (10.0 + u * (6.0 * u - 15.0));

@@ -216,7 +216,7 @@ impl Rig {
         self.observer.share() / self.allowed()
     }
 
-    /// The same without what lost samples are granted.
+    /// That share without what lost samples are granted.
     pub(crate) fn share_without_gaps(&self) -> f64 {
         self.ungranted.share() / self.allowed()
     }

@@ -120,7 +120,7 @@ pub fn similar_name(given: &str) -> Option<&'static str> {
 pub struct Joint {
     /// The preset's name.
     pub name: &'static str,
-    /// Its numbers.
+    /// Parameters of the joint.
     pub parameters: Parameters,
 }
 

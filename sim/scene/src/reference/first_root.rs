@@ -59,7 +59,7 @@ impl Sample {
 pub(super) enum Touch {
     /// No root until g is below zero.
     Passes,
-    /// It is the root, for a g that comes from above; whether it does at the
+    /// The touch is the root, for a g that comes from above; whether it does at the
     /// start of the search, too.
     Counts { from_above: bool },
 }

@@ -28,7 +28,7 @@ impl Parabola {
         let left = left.max(0.0);
         if rate > 0.0 {
             let square = rate * rate + 2.0 * curvature * left;
-            // Its top is at the limit, to rounding: the limit itself still holds.
+            // The parabola's top is at the limit, to rounding: the limit itself still holds.
             if curvature < 0.0 && square <= -2.0 * curvature * slack {
                 return None;
             }

@@ -151,7 +151,7 @@ impl Reference<'_> {
             let (duration_s, x_end) = self.steady?.for_state(x, omega)?;
             (duration_s, x_end + sense.of_signed(self.kinetic_angle_rad))
         };
-        // It repeats if it comes back to where it began.
+        // A cycle repeats if it comes back to where it began.
         if end_theta != theta || phi != self.now.phi_rad {
             return None;
         }

@@ -81,7 +81,7 @@ pub struct SymptomEvent {
     pub omega_rad_s: f64,
     /// The symptom's torque just before, N·m.
     pub torque_before_nm: f64,
-    /// Its torque just after, N·m.
+    /// The symptom's torque just after, N·m.
     pub torque_after_nm: f64,
     /// P of a catch, N·m.
     pub peak_nm: Option<f64>,
@@ -101,10 +101,10 @@ pub const NAMES: [&str; 7] = [
 /// A symptom on a prescribed motion.
 #[derive(Debug)]
 pub struct Symptom<'a> {
-    /// Its parts, which never have torque together: the two walls of
+    /// Parts of the symptom, which never have torque together: the two walls of
     /// `range-limit`.
     parts: Vec<Box<dyn Run + 'a>>,
-    /// It gives energy: a tank pays for it.
+    /// The symptom gives energy: a tank pays for it.
     is_active: bool,
 }
 

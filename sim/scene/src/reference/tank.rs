@@ -8,8 +8,8 @@
 //! C and R are the device's capacity and refill; what is shown is σ·T. The device's tank takes
 //! this once a tick, and of the torques that may have been acting the one that costs most.
 //!
-//! It is integrated by the classical Runge-Kutta method in steps of 20 µs, which end where a piece
-//! of the motion does: within 1e-6 of C against ten times shorter ones.
+//! The law is integrated by the classical Runge-Kutta method in steps of 20 µs, which end where a
+//! piece of the motion does: within 1e-6 of C against ten times shorter ones.
 
 use crepitus_model::render::effects::{TANK_J, TANK_REFILL_W};
 

@@ -82,7 +82,7 @@ pub const STRUCK_COLUMN: &str = "hand_impact_nms";
 /// An effect of the device, its present torque, and its work.
 struct Stage {
     spec: &'static EffectSpec,
-    /// Its place in the model's table.
+    /// Place of the effect in the model's table.
     place: usize,
     /// True if its contribution is part of the motor's torque.
     acts_on_joint: bool,

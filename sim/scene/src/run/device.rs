@@ -119,7 +119,8 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// Its parts, between breaks of the motion; one at its start only tells what it starts with.
+    /// Parts of the span, between breaks of the motion; one at its start only tells what it starts
+    /// with.
     fn parts(&self, cuts: &[Cut]) -> Vec<Self> {
         let mut parts = Vec::with_capacity(cuts.len() + 1);
         let mut rest = *self;

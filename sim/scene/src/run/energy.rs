@@ -132,7 +132,7 @@ pub(super) fn viscous_loss(
     parameters.damping_nms_per_rad * half_s * sum
 }
 
-/// The same above critical damping, where v = −λ·A·e^(−λ·t) − Λ·B·e^(−Λ·t): in closed form.
+/// The loss above critical damping, where v = −λ·A·e^(−λ·t) − Λ·B·e^(−Λ·t): in closed form.
 /// `None` where the two are too close for that.
 fn overdamped_loss(p: &Parameters, (x, v): (f64, f64), dt_s: f64) -> Option<f64> {
     let decay = 0.5 * p.damping_nms_per_rad / p.inertia_kg_m2;

@@ -17,7 +17,7 @@ const LOOKS_PER_SWING: f64 = 32.0;
 /// Part of the lead that may be rounding, as a share of |Ω| + |θ̇|.
 const ROUNDING_F64: f64 = 1e-12;
 
-/// The same in single precision.
+/// Part of the lead that may be rounding in single precision, likewise.
 const ROUNDING_F32: f64 = 1e-4;
 
 /// Velocity below which a body is at rest, as a share of the rounding of the velocity of a swing over Ts/kr.

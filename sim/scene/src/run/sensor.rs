@@ -12,7 +12,7 @@ use crepitus_plant::encoder::Encoder;
 /// Implementations are chosen once per run; an absent sensor is the type
 /// [`Ideal`], which has no state, no column and no test in the step.
 pub(super) trait Sensor<F: Real> {
-    /// Its columns in the trace.
+    /// Columns of the sensor in the trace.
     const COLUMNS: &'static [Column];
 
     /// Whether a step may be split where the motion breaks: a device samples on its ticks.

@@ -170,7 +170,7 @@ impl<F: Real> InParts<F> for Effects<F> {
 pub(super) enum Notice<F> {
     /// An event of it.
     Change(Change<F>),
-    /// It asks for a torque, and the tank pays so much of it, N·m.
+    /// The symptom asks for a torque, and the tank pays so much of it, N·m.
     Paid { asked_nm: F, paid_nm: F },
 }
 

@@ -33,7 +33,7 @@ pub struct Summary {
     /// The recording that the motion was read from.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub data: Option<DataFile>,
-    /// Its title.
+    /// Title of the scene.
     pub title: String,
     /// Kind of motion.
     pub motion: &'static str,
@@ -41,15 +41,15 @@ pub struct Summary {
     pub seed: Option<u64>,
     /// Name of the solver.
     pub solver: &'static str,
-    /// Its step, s; none for `reference`.
+    /// Step of the solver, s; none for `reference`.
     pub step_s: Option<f64>,
-    /// Its precision.
+    /// Precision of the solver.
     pub precision: &'static str,
     /// Convention of the stick-slip object, if there is one.
     pub convention: Option<&'static str>,
-    /// Its restart rule.
+    /// Restart rule of the stick-slip object.
     pub restart: Option<&'static str>,
-    /// Its preset, if it started from one.
+    /// Preset of the scene, if it started from one.
     pub preset: Option<&'static str>,
     /// The effects that ran.
     pub effects: Vec<EffectSummary>,
@@ -95,16 +95,16 @@ pub struct Summary {
 /// One effect that ran.
 #[derive(Clone, Debug, Serialize)]
 pub struct EffectSummary {
-    /// Its name in scene files.
+    /// Name of the effect in scene files.
     pub name: &'static str,
-    /// Its state variables.
+    /// State variables of the effect.
     pub states: &'static [&'static str],
     /// Cost, once measured; never for `reference`.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub added: Option<AddedTime>,
-    /// Its parameters.
+    /// Parameters of the effect.
     pub parameters: Vec<ParameterValue>,
-    /// Its choices by name.
+    /// Choices of the effect by name.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub choices: Vec<ChoiceValue>,
 }
@@ -255,7 +255,7 @@ pub struct LeadSummary {
 /// sum of what was given = sum of what is stored, lost and rendered + residual.
 #[derive(Clone, Debug, Serialize)]
 pub struct PlantEnergySummary {
-    /// Its terms, from the hand to the motor.
+    /// Terms of the balance, from the hand to the motor.
     pub terms: Vec<EnergyTerm>,
     /// Residual.
     pub residual_j: f64,

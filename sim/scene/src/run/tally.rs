@@ -190,8 +190,8 @@ impl Tally {
             integral = shown_nm * dt_s;
             (from, to) = shown;
         }
-        // Its shaft is not that of the joint: the step had more events than it takes in, or
-        // is far too long for the method.
+        // The shaft of the step is not that of the joint: the step had more events than it takes
+        // in, or is far too long for the method.
         if integral.abs() > (1.0 + 1e-9) * limit * dt_s {
             integral = f64::midpoint(from, to) * dt_s;
         }

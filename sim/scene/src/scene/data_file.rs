@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// A file of data, identified by its content.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct DataFile {
-    /// Its whole path.
+    /// Whole path of the file.
     pub file: PathBuf,
     /// SHA-256 of its content, in hex digits.
     pub sha256: String,

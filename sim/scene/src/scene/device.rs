@@ -65,7 +65,7 @@ pub(super) fn compensation_warning(listed: &[Listed]) -> Option<String> {
     })
 }
 
-/// The same of a scene, if it has a device.
+/// The warning of `caps_warning` for a scene, if it has a device.
 pub(super) fn caps_warning_of(scene: &Scene) -> Option<String> {
     let joint = scene.crepitus.as_ref().map(|c| &c.settings.parameters);
     let (limits, range) = (LimitSettings::default(), RangeSettings::default());

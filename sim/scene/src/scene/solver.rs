@@ -16,9 +16,9 @@ pub enum SolverChoice {
     Ladder {
         /// The rung.
         solver: Solver,
-        /// Its step, s.
+        /// Step of the rung, s.
         step_s: f64,
-        /// Its precision.
+        /// Precision of the rung.
         precision: Precision,
     },
 }

@@ -296,7 +296,7 @@ impl Pair<'_> {
             let seed = self.case.number.wrapping_mul(TRIALS).wrapping_add(trial);
             let rounded = match solve_rounded(problem(self.case), Rounding::of(UNITS, seed)) {
                 Ok(history) => history.events,
-                // It stopped somewhere: nothing beyond the first is certain.
+                // The solver stopped somewhere: nothing beyond the first is certain.
                 Err(_) => Vec::new(),
             };
             let same = (ours.iter().zip(&rounded))

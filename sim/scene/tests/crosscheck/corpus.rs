@@ -45,7 +45,7 @@ crepitus_model::named! {
 /// A joint and a motion to compare solvers on.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// Its number.
+    /// Number of the case.
     pub number: u64,
     /// The joint.
     pub settings: Validated<Settings>,

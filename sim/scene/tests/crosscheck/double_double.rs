@@ -35,7 +35,7 @@ fn two_sum(a: f64, b: f64) -> Dd {
     }
 }
 
-/// The same where |a| ≥ |b|.
+/// The sum and its rounding error where |a| ≥ |b|.
 #[inline]
 fn quick_two_sum(a: f64, b: f64) -> Dd {
     let hi = a + b;

@@ -23,11 +23,11 @@ pub enum Cause {
 /// One event.
 #[derive(Clone, Copy, Debug)]
 pub struct Event {
-    /// Its kind.
+    /// Kind of the event.
     pub kind: EventKind,
-    /// Its cause.
+    /// Cause of the event.
     pub cause: Cause,
-    /// Its time, s.
+    /// Time of the event, s.
     pub time_s: Dd,
     /// The sense before: −1, 0 (stick), +1.
     pub from: i8,

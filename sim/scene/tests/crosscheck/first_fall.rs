@@ -19,7 +19,7 @@ use crate::series::{MOST, Series, number};
 
 /// Rounding of an f64 Horner sum of at most 36 terms, relative to Σ|cₖ|.
 const F64_ROUNDING: f64 = 1.5e-14;
-/// The same with 31 digits, with a margin for the rounding of coefficients
+/// Rounding of a sum with 31 digits, with a margin for the rounding of coefficients
 /// that come from many steps.
 const DD_ROUNDING: f64 = 3.2e-27;
 /// The smallest interval that is looked at.
@@ -28,11 +28,11 @@ const NARROWEST: f64 = 1e-15;
 /// First fall of a series above zero, if there is one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fall {
-    /// It stays above zero up to σ = 1.
+    /// The series stays above zero up to σ = 1.
     Never,
-    /// It falls through zero.
+    /// The series falls through zero.
     At(Root),
-    /// It reaches zero, as far as 31 digits tell, and rises again.
+    /// The series reaches zero, as far as 31 digits tell, and rises again.
     Touch(Dd),
     /// The least interval could not be decided.
     Unclear(f64),

@@ -102,9 +102,9 @@ impl Counts {
 pub struct Row {
     /// Index of the piece, from 0.
     pub piece: u64,
-    /// Its convention.
+    /// Convention of the piece.
     pub convention: Convention,
-    /// Its motion.
+    /// Motion of the piece.
     pub motion: MotionKind,
     /// The counts.
     pub counts: Counts,

@@ -62,12 +62,12 @@ struct Joint {
 /// State of the object. Senses are ±1.
 #[derive(Clone, Copy, Debug)]
 enum Phase {
-    /// It moves with the shaft; `fresh` where the torque may begin at a limit.
+    /// The object moves with the shaft; `fresh` where the torque may begin at a limit.
     Stick { fresh: bool },
     /// `paper`: kr·θ is beyond the limit of this sense, and a slip cannot
     /// begin.
     Held(f64),
-    /// It slips; how the gap s·(Ω − θ̇) begins.
+    /// The object slips; how the gap s·(Ω − θ̇) begins.
     Slip { sense: f64, gap: Gap },
 }
 

@@ -26,7 +26,7 @@ pub const LAW_ROUNDINGS: f64 = 256.0;
 /// All that is asked of `reference`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Theirs {
-    /// Its first events; `fraction` is the time, s.
+    /// First events of `reference`; `fraction` is the time, s.
     pub events: Vec<Event<f64>>,
     /// The worst breach of the sign law, in roundings; 0 where there is none.
     pub breach: f64,

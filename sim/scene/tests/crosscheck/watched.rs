@@ -25,7 +25,7 @@ const CASES: &str = "CREPITUS_REFERENCE_CASES";
 /// Result of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
-    /// It was solved.
+    /// The case was solved.
     Solved(Theirs),
     /// No answer in time.
     Hung,
@@ -81,7 +81,7 @@ impl Watched {
     fn stop(&mut self) {
         if let Some((mut child, receiver)) = self.child.take() {
             drop(receiver);
-            // It may have ended by itself; either way it is reaped.
+            // The child may have ended by itself; either way it is reaped.
             let _ = child.kill();
             let _ = child.wait();
         }

@@ -86,7 +86,7 @@ fn a_reflex_lags_a_ramp_by_its_delay_and_its_activation() {
         let torque = torque_at("spasticity", &keys, &motion, time_s);
         near(torque, at(time_s), TORQUE_NM);
     }
-    // Its transient, from τd after the onset on.
+    // The transient of the reflex, from τd after the onset on.
     let onset_s = found[0].time_s;
     near(
         torque_at("spasticity", &keys, &motion, onset_s + 0.05),
@@ -124,7 +124,7 @@ fn a_reflex_on_a_sine_has_its_gain_and_phase() {
         let y = k * 150.0_f64.to_radians() + gain * amplitude * (w * time_s + phase).sin();
         near(torque_at("spasticity", &keys, &motion, time_s), y, 1e-12);
     }
-    // It gives energy above 3.73 Hz.
+    // The reflex gives energy above 3.73 Hz.
     for (f, gives) in [(3.70, false), (3.76, true)] {
         let w = TAU * f;
         let lead: f64 = (mu * w).atan() - w * delay - (activation * w).atan();
@@ -254,7 +254,7 @@ fn clonus_beats_at_its_intervals() {
         let interval = pair[1] - pair[0];
         near(1e3 * interval, expected, 0.05);
         near(interval, (1.0 + 0.3 * 0.5_f64.powi(n)) / 6.0, 1e-12);
-        // Its height, its end, and 2·A·D·P/π of impulse.
+        // Height and end of the beat, and 2·A·D·P/π of impulse.
         let peak_s = pair[0] + 0.225 * interval;
         near(torque_at("clonus", &keys, &motion, peak_s), 1.5, TORQUE_NM);
         let end_s = pair[0] + 0.4501 * interval;

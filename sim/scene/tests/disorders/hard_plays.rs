@@ -82,7 +82,7 @@ fn armed_inside_a_wall_there_is_no_push() {
     let mut limit = symptom("range-limit", &wall(60.0, 400.0, 0.3), &motion);
     near(limit.torque_nm(), 0.0, 0.0);
     let found = limit.advance(0.5);
-    // It rises along σ to the cap, and goes back along σ.
+    // The torque rises along σ to the cap, and goes back along σ.
     assert_eq!(words(&found), ["cap", "turn", "slack", "leave"]);
     let sigma = (60.0_f64 * 60.0 + 1600.0 * 4.0).sqrt() / 0.7;
     near(

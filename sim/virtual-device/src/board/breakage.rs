@@ -36,7 +36,7 @@ impl Board {
         self.reset_for(controller, cause, START_TICKS);
     }
 
-    /// The same, with a start-up time in ticks.
+    /// A controller is reset, with a start-up time in ticks: its pins fall, and it restarts.
     pub fn reset_for(&mut self, controller: Controller, cause: ResetCause, ticks: u64) {
         *self.health(controller) = Health::StartsAt(self.tick + ticks, cause);
         match controller {

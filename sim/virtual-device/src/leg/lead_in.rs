@@ -38,11 +38,11 @@ pub(super) struct LeadIn {
 /// Stage of the lead-in.
 #[derive(Clone, Copy)]
 enum Stage {
-    /// It rests; the motor has been driven for so many ticks without a break.
+    /// The leg rests; the motor has been driven for so many ticks without a break.
     Waits { driven_ticks: u32 },
-    /// It is on its way, for so many ticks more.
+    /// The leg is on its way, for so many ticks more.
     Leads { ticks: u32 },
-    /// It is there.
+    /// The leg is there.
     Over,
 }
 

@@ -4,9 +4,9 @@
 //! peripheral. The other end is a [`SoftCable`]. The two may live in different threads; in one
 //! thread, everything that happens is decided by the order of the calls.
 //!
-//! It behaves as an OTG_FS core whose device has its own supply and does not sense VBUS: a pulled
-//! cable is an idle bus, which the core reports as a suspend; plugged in again, the device stays
-//! suspended until the host resets it.
+//! The bus behaves as an OTG_FS core whose device has its own supply and does not sense VBUS: a
+//! pulled cable is an idle bus, which the core reports as a suspend; plugged in again, the device
+//! stays suspended until the host resets it.
 
 use std::sync::{Arc, Mutex};
 

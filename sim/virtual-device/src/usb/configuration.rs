@@ -14,7 +14,7 @@ pub struct ConfigurationDescriptor {
     pub value: u8,
     /// `bMaxPower`, milliamperes.
     pub max_power_ma: u16,
-    /// It has a supply of its own.
+    /// The device has a supply of its own.
     pub is_self_powered: bool,
     /// The interfaces, each alternate setting apart.
     pub interfaces: Vec<InterfaceDescriptor>,
@@ -33,7 +33,7 @@ pub struct InterfaceDescriptor {
     pub subclass: u8,
     /// `bInterfaceProtocol`.
     pub protocol: u8,
-    /// Its endpoints.
+    /// Endpoints of the interface.
     pub endpoints: Vec<EndpointDescriptor>,
 }
 

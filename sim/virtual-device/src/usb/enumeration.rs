@@ -106,7 +106,7 @@ pub enum EnumerationError {
 /// A device with an address and its descriptors, not configured yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AddressedDevice {
-    /// Its control endpoint, for further requests.
+    /// Control endpoint of the device, for further requests.
     pub control: ControlPipe,
     /// The device descriptor.
     pub device: DeviceDescriptor,
@@ -169,7 +169,7 @@ impl AddressedDevice {
 /// A configured serial port with its descriptors.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CdcDevice {
-    /// Its control endpoint, for further requests.
+    /// Control endpoint of the device, for further requests.
     pub control: ControlPipe,
     /// The device descriptor.
     pub device: DeviceDescriptor,

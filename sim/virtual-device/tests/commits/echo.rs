@@ -85,7 +85,7 @@ fn echoed(mut host: Host, phase: u64) {
                 }
             }
         }
-        // It took effect with the first tick of a block: no block is mixed.
+        // The commit took effect with the first tick of a block: no block is mixed.
         let first = first_new.expect("a block");
         assert_eq!(first.first_tick, taken);
         let both_on = [&values, &next].map(|v| v.get(id::CREPITUS)) == [Some(1.0); 2];

@@ -185,7 +185,7 @@ fn provoke(host: &mut Host, cause: &Cause) -> (u64, u64) {
     (driven, latched)
 }
 
-/// It stays until it is cleared, and the motor goes on.
+/// The fault stays until it is cleared, and the motor goes on.
 fn stays_until_cleared(host: &mut Host, cause: &Cause) {
     assert!(host.device.board().is_driven(), "{}", cause.name);
     let status = host.status();

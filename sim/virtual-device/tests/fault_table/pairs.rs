@@ -79,7 +79,7 @@ const DRIFT_A: f64 = 0.19;
 const DRIFTS: &str = "drifts by 0.19 A";
 const DRIFT_NM: f64 = 0.65;
 
-/// It has to be fitted.
+/// The joint's sensor, which has to be fitted.
 const JOINT_SENSOR: &str = "joint's sensor";
 
 /// A joint: its static torque, N·m, and its parameters.

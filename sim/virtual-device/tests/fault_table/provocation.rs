@@ -20,7 +20,7 @@ use crepitus_virtual_device::board::Controller::{Comms, Drive};
 pub(crate) enum Provocation {
     /// Each of these causes it.
     Cases(Vec<Case>),
-    /// It cannot be caused here: why.
+    /// The fault cannot be caused here: why.
     None(&'static str),
 }
 

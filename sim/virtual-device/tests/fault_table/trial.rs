@@ -131,7 +131,7 @@ impl Trial<'_> {
         let (mut since, mut onset) = (0, None);
         while latched.is_none_or(|latched| since < latched + AFTER_TICKS) {
             if self.tick(since) {
-                // It floats in the next tick, or later.
+                // The bridge floats in the next tick, or later.
                 floats = since + 2;
             } else if was_armed {
                 floats = floats.max(1);

@@ -109,7 +109,7 @@ fn a_host_that_is_killed_loses_its_torque_and_another_gets_everything() {
 fn a_port_that_is_never_read_stops_nothing() {
     const SECONDS: u64 = 10;
     let mut host = streaming();
-    // It renews its lease, and reads nothing.
+    // The host renews its lease, and reads nothing.
     host.device.host().expect("a port").set_open(false);
     let produced = host.drive_count(DriveCounter::Produced);
     host.run(SECONDS * 20_000);
@@ -122,7 +122,7 @@ fn a_port_that_is_never_read_stops_nothing() {
     );
     assert_eq!(host.comms_count(CommsCounter::LostSamples), 0);
     assert_eq!(host.device.board().drive().state(), State::Armed);
-    // It reads again: the accounting says to the sample what it has missed.
+    // The host reads again: the accounting says to the sample what it has missed.
     host.device.host().expect("a port").set_open(true);
     host.run(4_000);
     let accounting = host.accounting.expect("a subscription");

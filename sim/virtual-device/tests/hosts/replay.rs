@@ -125,7 +125,7 @@ fn nothing_that_is_replayed_is_executed() {
 fn renewals_of_before_the_session_was_opened_again_are_none() {
     let mut host = connected();
     host.arm();
-    // Its number is newer than all that follow.
+    // The number of this renewal is newer than all that follow.
     let old = host.request_of(host.session, u32::MAX, Operation::Renew);
     host.open();
     host.run(2_000);

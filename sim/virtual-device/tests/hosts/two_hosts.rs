@@ -181,7 +181,7 @@ fn stopping_works_in_the_middle_of_the_others_arming() {
             assert_eq!(answers.len(), 1, "phase {phase}: {replies:?}");
             answers[0]
         };
-        // It had been armed, or was given up.
+        // The drive had been armed, or the arming was given up.
         assert!(
             [Ok(Answer::Done), Err(Refusal::Aborted)].contains(&of(first)),
             "phase {phase}: {:?}",

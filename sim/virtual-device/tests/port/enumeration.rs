@@ -151,7 +151,7 @@ fn no_device_is_an_error_at_the_first_request() {
 fn a_device_that_hangs_is_a_time_out_at_the_request_it_hangs_in() {
     with_device(Echo::default(), |mut device, mut cable| {
         let mut turns = 0;
-        // It handles the bus reset and then no more.
+        // The device handles the bus reset and then no more.
         let result = CdcDevice::enumerate(&mut cable, &mut |cable| {
             turns += 1;
             if turns <= 200 {

@@ -69,7 +69,7 @@ pub(crate) fn examination() -> Scene {
     scene(EXAMINATION)
 }
 
-/// The same at another speed, with another pause between two strokes.
+/// The examination at another speed, with another pause between two strokes.
 pub(crate) fn examination_at(peak_speed_deg_s: f64, pause_s: f64) -> Scene {
     changed(
         EXAMINATION,
@@ -80,7 +80,7 @@ pub(crate) fn examination_at(peak_speed_deg_s: f64, pause_s: f64) -> Scene {
     )
 }
 
-/// The same with a vibration actuator at the ankle.
+/// The examination with a vibration actuator at the ankle.
 pub(crate) fn with_actuator() -> Scene {
     scene(&[EXAMINATION, "[effects.shell]\n[effects.reaction-mass]\n"].concat())
 }
@@ -92,7 +92,7 @@ pub(crate) struct Accounting {
     pub(crate) received: u64,
     /// Samples that were not sent, as of the last block.
     pub(crate) dropped: u32,
-    /// The same before the subscription, which is not of its accounting.
+    /// Samples that were not sent before the subscription, which are not of its accounting.
     pub(crate) dropped_before: u32,
     pub(crate) end_tick: u64,
     /// The number of the drive's start: with another one, accounting begins again.

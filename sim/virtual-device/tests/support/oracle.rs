@@ -1,6 +1,6 @@
 //! Invariants of every tick, whatever the wires do.
 //!
-//! It believes only what it sees at the ends: heartbeats and renewals that were
+//! The oracle believes only what it sees at the ends: heartbeats and renewals that were
 //! counted, the bridge, the values in force at the drive, and the samples that
 //! arrive. Neither controller may have restarted meanwhile.
 

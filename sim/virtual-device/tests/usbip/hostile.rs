@@ -187,7 +187,7 @@ fn too_much_at_once_is_refused_and_the_rest_is_done() {
             client.unlink(*number);
             assert_eq!(bench.reply(&mut client).status, -104);
         }
-        // The same with data, to a device that takes none: four times 256 KiB wait, the fifth does not.
+        // Data to a device that takes none: four times 256 KiB wait, the fifth does not.
         let long = vec![0x33; 256 * 1024];
         let numbers = [(); 5].map(|()| client.submit_out(BULK_OUT, &long, 0));
         while client.unsent() > 0 {
@@ -236,7 +236,7 @@ fn a_client_that_does_not_read_stops_only_itself() {
             [],
             "others are served"
         );
-        // It reads at last: one answer for each, in order but for those that were refused.
+        // The client reads at last: one answer for each, in order but for those that were refused.
         let mut answered = 0_u32;
         let mut last = 0;
         let mut rounds = 0;

@@ -181,7 +181,7 @@ fn a_pulled_cable_ends_the_import() {
 #[test]
 fn a_device_that_hangs_is_not_offered() {
     with_bench(Echo::default(), |bench| {
-        // It is on the bus, but nothing polls it.
+        // The device is on the bus, but nothing polls it.
         let mut client = bench.connect();
         client.request_list();
         client.exchange();

@@ -274,7 +274,7 @@ proptest! {
                 prop_assert_eq!(submit.data.len(), carried);
                 prop_assert!(carried == 0 || carried == submit.length);
             }
-            // The same with something behind it, and incomplete without its last byte.
+            // Bytes behind the command change nothing; without its last byte it is incomplete.
             let longer = [bytes.as_slice(), &[0xff; 60]].concat();
             prop_assert_eq!(&decode(&longer), &decoded);
             prop_assert_eq!(decode(&bytes[..used - 1]), Ok(None));

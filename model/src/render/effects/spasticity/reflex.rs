@@ -101,7 +101,7 @@ struct Jump<F> {
     ago: usize,
     /// Share of its tick at which it is.
     at: F,
-    /// Its height, N·m; zero for none.
+    /// Height of the jump, N·m; zero for none.
     nm: F,
 }
 

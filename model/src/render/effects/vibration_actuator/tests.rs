@@ -35,7 +35,7 @@ fn settings_are_their_table_and_are_held_to_it() {
         soft.check(),
         Err(SettingsError::Contradiction { .. })
     ));
-    // Its weight takes 2.48 mm: 0.6 of this stroke.
+    // The weight of the mass takes 2.48 mm: 0.6 of this stroke.
     for (stroke_mm, is_one) in [(4.13, false), (4.15, true)] {
         let soft = VibrationActuatorSettings { stroke_mm, ..soft };
         assert_eq!(soft.check().is_ok(), is_one, "{stroke_mm}");
@@ -285,7 +285,7 @@ fn what_is_no_number_silences() {
     assert_eq!((silent.excursion, silent.high_pass.behind), (0.0, 0.0));
 }
 
-/// Its command in a tick that shows this torque.
+/// Command of the actuator in a tick that shows this torque.
 fn after(stage: &mut Exchanged<f32>, torque_nm: f32, is_driven: bool) -> Shown<f32> {
     let mut shown = Shown {
         torque_nm,

@@ -36,7 +36,7 @@ const NEARLY: f64 = 1e-5;
 /// State of the bridge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Terminals {
-    /// It holds this voltage, V; positive drives towards growing angle.
+    /// The bridge holds this voltage, V; positive drives towards growing angle.
     Driven(f64),
     /// All switches are off.
     Open,

@@ -4,7 +4,7 @@
 //! L·di/dt = v − R·i − Kt·N·Ω,   torque on the joint = Kt·N·i
 //! ```
 //!
-//! Its 0.28 ms are short against a tick, so the equation is solved exactly for
+//! The winding's 0.28 ms are short against a tick, so the equation is solved exactly for
 //! a constant voltage and the shaft's mean velocity w over a step: current and
 //! mean torque come out affine in w, so the coupling with the mechanics is
 //! implicit, and what the terminals take in is exactly what the copper, the
@@ -189,7 +189,7 @@ impl Winding {
         self.current_a
     }
 
-    /// Its torque now, N·m: positive in the direction of growing angle.
+    /// Torque of the winding now, N·m: positive in the direction of growing angle.
     #[inline]
     pub fn load_nm(&self) -> f64 {
         self.settings.constant * self.current_a

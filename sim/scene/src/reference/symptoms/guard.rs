@@ -7,7 +7,7 @@
 //! g(t) = c + α·x + β·v + D·e^(−(t − t₀)/τ)
 //! ```
 //!
-//! Its derivatives are known and the second one is bounded over a piece of the
+//! The derivatives of g are known and the second one is bounded over a piece of the
 //! motion, so the search cannot step over a root, however short the visit is
 //! (see [`first_root`](super::super::first_root)).
 
@@ -80,12 +80,12 @@ impl Guard {
         }
     }
 
-    /// The same condition with a c that is the sum of terms of this size.
+    /// The condition with a c that is the sum of terms of this size.
     pub(super) fn of_terms(self, terms: f64) -> Self {
         Self { terms, ..self }
     }
 
-    /// The same condition on −x and −v if `sign` is −1.
+    /// The condition on −x and −v if `sign` is −1.
     pub(super) fn mirrored(self, sign: f64) -> Self {
         Self {
             angle: sign * self.angle,

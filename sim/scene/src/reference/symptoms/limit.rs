@@ -35,7 +35,7 @@ pub(super) enum Limit {
 }
 
 impl Limit {
-    /// The same at every angle and time.
+    /// A limit that is equal at every angle and time.
     pub(super) const fn level(torque_nm: f64) -> Self {
         Self::line(torque_nm, 0.0, 0.0)
     }

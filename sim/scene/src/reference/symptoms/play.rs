@@ -4,7 +4,7 @@
 //! T = σ·(x − a), held within ℓ(t, x) ≤ T ≤ u(t, x) by moving a
 //! ```
 //!
-//! It is elastic (a is fixed) until T meets a limit, follows the limit, and is
+//! The play is elastic (a is fixed) until T meets a limit, follows the limit, and is
 //! elastic again from where σ·v < du/dt (upper limit), or σ·v > dℓ/dt (lower).
 //!
 //! Readings: armed, a = φ; a one-sided play is then elastic if the joint moves
@@ -93,7 +93,7 @@ pub(super) enum Mode {
 pub(super) enum PlayAction {
     /// The torque meets a limit.
     Meet(End),
-    /// It leaves the limit that it is at.
+    /// The torque leaves the limit that it is at.
     Turn,
 }
 

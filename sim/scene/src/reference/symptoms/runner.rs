@@ -50,7 +50,7 @@ impl From<Word> for Reported {
 
 /// A law of a symptom, written for s = +1.
 pub(super) trait Law {
-    /// Its actions.
+    /// Actions of the law.
     type Action: Copy;
 
     /// Takes the state in which it is armed: without torque.
@@ -83,7 +83,7 @@ pub(super) trait Run: std::fmt::Debug {
 pub(super) struct Runner<'a, L: Law> {
     motion: &'a Motion,
     piece: Piece,
-    /// Its place in the motion.
+    /// Place of the piece in the motion.
     piece_place: usize,
     sign: f64,
     law: L,

@@ -19,7 +19,7 @@ pub(super) enum Leaving {
     Above(Series),
     /// Continuation below zero.
     Below,
-    /// It stays.
+    /// The series stays at zero.
     Nowhere,
 }
 

@@ -42,7 +42,7 @@ impl Exported {
             product_id: device.product_id,
             release: device.device_release,
             class: [device.class, device.subclass, device.protocol],
-            // It has just been reset.
+            // The device has just been reset.
             configuration: 0,
             configurations: device.configurations,
             interfaces: configuration

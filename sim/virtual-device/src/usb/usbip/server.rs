@@ -92,19 +92,19 @@ impl From<io::Error> for Cause {
 pub enum Event {
     /// A client has the device now.
     Imported {
-        /// Its address.
+        /// Address of the client.
         client: SocketAddr,
     },
     /// The client no longer has the device.
     Released {
-        /// Its address.
+        /// Address of the client.
         client: SocketAddr,
         /// Cause of the release.
         cause: Cause,
     },
     /// A client did not get what it asked for.
     Refused {
-        /// Its address.
+        /// Address of the client.
         client: SocketAddr,
         /// Cause of the refusal.
         cause: Cause,
@@ -116,7 +116,7 @@ pub enum Event {
 struct Guest {
     connection: Connection,
     frames_left: u32,
-    /// It has its reply; nothing further is expected of it.
+    /// The client has its reply; nothing further is expected of it.
     is_answered: bool,
 }
 

@@ -30,11 +30,11 @@ pub enum Refusal {
 pub struct DeviceRecord {
     /// Path of the device on the server, for people: at most 255 bytes.
     pub path: &'static str,
-    /// Its name in requests: at most 31 bytes.
+    /// Name of the device in requests: at most 31 bytes.
     pub bus_id: &'static str,
     /// The number of its bus.
     pub bus: u16,
-    /// Its number on that bus.
+    /// Number of the device on that bus.
     pub number: u16,
     /// `idVendor`.
     pub vendor_id: u16,

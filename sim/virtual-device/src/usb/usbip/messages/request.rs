@@ -65,7 +65,7 @@ pub enum MessageError {
     /// A transfer longer than [`MAX_TRANSFER`].
     #[error("a transfer of {bytes} bytes; at most {MAX_TRANSFER} are accepted")]
     TooLong {
-        /// Its length, bytes.
+        /// Length of the transfer, bytes.
         bytes: u32,
     },
     /// An isochronous transfer.
@@ -136,9 +136,9 @@ pub enum Direction {
 /// A transfer to be done.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Submit {
-    /// Its number, which the reply carries.
+    /// Number of the transfer, which the reply carries.
     pub sequence: u32,
-    /// Its direction.
+    /// Direction of the transfer.
     pub direction: Direction,
     /// The endpoint's number, 0 to 15.
     pub endpoint: u8,
