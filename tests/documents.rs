@@ -131,7 +131,7 @@ fn page(name: &str) -> String {
 #[test]
 fn pages_for_teachers_say_from_where_on_the_device_lets_go() {
     let limit = 5.73_f64;
-    assert!(page("faults.md").contains(&format!("({limit} rad/s at 24 V)")));
+    assert!(page("generated/faults.md").contains(&format!("({limit} rad/s at 24 V)")));
     let lets_go = format!("from {:.0} °/s on", limit.to_degrees());
     for name in ["disorders.md", "symptoms.md", "lesson.md", "panel.md"] {
         assert!(
