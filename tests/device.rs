@@ -154,6 +154,16 @@ fn a_device_is_backed_up_and_restored_by_name() {
     let before = get();
     let again = served.run(&["params", "backup", file]);
     assert_eq!(again.status.code(), Some(2), "it replaces nothing");
+    // Nor are they saved where they are restored.
+    said(&["params", "reset", "encoder", "clonus"]);
+    let restored = said(&["params", "restore", file]);
+    assert!(
+        restored.contains("as on the device of the backup"),
+        "{restored}"
+    );
+    assert_eq!(get(), before);
+    let status = &served.info()["status"];
+    assert_ne!(status["saved"], status["revision"]);
     said(&["params", "save"]);
     std::fs::remove_file(file).unwrap();
     assert!(!said(&["params", "backup", file]).contains("not saved"));

@@ -287,7 +287,8 @@ fn sources(path: &Path, all: &mut String) {
     }
 }
 
-/// Reason why `cargo test -p PACKAGE [--lib | --test NAME] [FILTER]` would run nothing.
+/// Reason why `cargo test -p PACKAGE [--features NAME] [--lib | --bin NAME | --test NAME] [FILTER]`
+/// would run nothing.
 fn runs_nothing(command: &str) -> Option<String> {
     let mut words = command.strip_prefix("cargo test -p ")?.split(' ');
     let Some(folder) = words.next().and_then(folder_of) else {
@@ -302,15 +303,28 @@ fn runs_nothing(command: &str) -> Option<String> {
     let (mut code, mut filter) = (String::new(), None);
     while let Some(word) = words.next() {
         match word {
+            "--" => {}
+            "--features" => {
+                words.next();
+            }
             "--lib" => sources(&folder.join("src"), &mut code),
+            "--bin" => {
+                words.next();
+                sources(&folder.join("src"), &mut code);
+            }
             "--test" => {
                 let name = words.next().unwrap_or_default();
                 sources(&tests.join(format!("{name}.rs")), &mut code);
-                if tests.join(name).is_dir() {
-                    sources(&tests.join(name), &mut code);
+                // The laws of the fuzz targets lie in their package.
+                let parts = match name {
+                    "fuzz" => repository().join("fuzz/src"),
+                    _ => tests.join(name),
+                };
+                if parts.is_dir() {
+                    sources(&parts, &mut code);
                 }
             }
-            other => filter = Some(other.trim_end_matches("::")),
+            other => filter = other.trim_end_matches("::").rsplit("::").next(),
         }
     }
     if code.is_empty() {
@@ -354,6 +368,23 @@ fn every_risk_names_tests_that_exist_or_says_that_it_is_open() {
     ] {
         assert!(runs_nothing(wrong).is_some(), "{wrong}");
     }
+}
+
+#[test]
+fn every_planted_fault_names_a_test_that_exists() {
+    let mut named = 0;
+    for area in fs::read_dir(repository().join("tools/faults")).unwrap() {
+        for patch in fs::read_dir(area.unwrap().path()).unwrap() {
+            let path = patch.unwrap().path();
+            let text = fs::read_to_string(&path).unwrap();
+            for test in text.lines().filter_map(|l| l.strip_prefix("Noticed-by: ")) {
+                named += 1;
+                let wrong = runs_nothing(&format!("cargo test {test}"));
+                assert_eq!(wrong, None, "{}", path.display());
+            }
+        }
+    }
+    assert!(named >= 71, "{named}");
 }
 
 #[test]

@@ -12,7 +12,9 @@
 //! - every frame that it sends is valid, and every sample is accounted for;
 //! - parts of the record of a crash are that record's.
 
+mod from_drive;
 mod readings;
+mod to_drive;
 
 use crate::bytes::Bytes;
 use crate::link_inputs;
@@ -24,12 +26,9 @@ use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::prepare::LARGEST_DUTY;
 use crepitus_device::drive::{Boot, Crash};
 use crepitus_device::self_test::SelfTest;
-use crepitus_protocol::counters::DriveCounter;
-use crepitus_protocol::crash::{End, Head, PART_WORDS, TICK_WORDS};
-use crepitus_protocol::link::{FromDrive, Heartbeat, Order, STALE_TICKS, ToDrive};
-use crepitus_protocol::management::{Answer, Identity, ManagementRequest, ResetCause};
-use crepitus_protocol::pieces::{self, Piece};
-use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block, SampleFlags};
+use crepitus_protocol::crash::{End, Head, TICK_WORDS};
+use crepitus_protocol::link::{Heartbeat, Order, ToDrive};
+use crepitus_protocol::management::{Identity, ManagementRequest, ResetCause};
 use crepitus_protocol::{
     Decoder, DeviceSettings, HEARTBEAT_TICKS, Lane, Revision, State, TICK_US, Values, frame, schema,
 };
@@ -39,15 +38,6 @@ use std::collections::VecDeque;
 
 /// The most ticks of one input.
 const MOST_TICKS: u64 = 4096;
-
-/// The largest torque that limits can be set to, N·m.
-const MOST_NM: f32 = 4.5;
-
-/// More runs than a status takes to be made, with the answers that go before it.
-const STATUS_RUNS: usize = 60;
-
-/// The most milliseconds that a drive in order takes from a commit to its revision.
-const MOST_PREPARING_MS: u32 = 20;
 
 /// Bytes that say how it starts.
 pub(crate) const HEAD_BYTES: usize = 5;
@@ -243,112 +233,6 @@ impl Bench {
         }
     }
 
-    /// All that arming needs.
-    fn arm(&mut self) {
-        let revision = Revision(1);
-        self.commit(revision, &Values::default());
-        // The drive prepares values between its ticks, some of them in each.
-        for _ in 0..MOST_PREPARING_MS {
-            self.heartbeat(5_000);
-            self.run(20, &Readings::good());
-            if self.drive.revision() == revision {
-                break;
-            }
-        }
-        self.heartbeat(5_000);
-        for order in [Order::ClearFault, Order::Zero, Order::Arm] {
-            self.number = self.number.wrapping_add(1);
-            self.send(&ToDrive::Command {
-                seen_tick: self.drive.next_tick(),
-                number: self.number,
-                order,
-            });
-        }
-    }
-
-    fn heartbeat(&mut self, lease_left: u16) {
-        self.beat = self.beat.wrapping_add(1);
-        self.send(&ToDrive::Heartbeat(Heartbeat {
-            seen_tick: self.drive.next_tick(),
-            lease_left,
-            enable: true,
-            start: 0,
-            number: self.beat,
-        }));
-    }
-
-    fn commit(&mut self, revision: Revision, values: &Values) {
-        self.sent.push((revision, *values));
-        let send = pieces::to_send(&values.0);
-        let [count, ..] = send.count_ones().to_le_bytes();
-        let all = (0..).map_while(|index| Piece::of(&values.0, index));
-        for piece in all.filter(|piece| send >> piece.index & 1 == 1) {
-            self.send(&ToDrive::Commit {
-                revision,
-                seal: pieces::seal(&values.0, 0),
-                pieces: count,
-                piece,
-            });
-        }
-    }
-
-    fn send(&mut self, message: &ToDrive) {
-        let frame = frame::encode(Lane::ToDrive, message).expect("every message fits");
-        self.receive(&frame);
-    }
-
-    /// Bytes for the drive, and for the oracle.
-    fn receive(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            let message = match self.ear.push(*byte) {
-                Some(Ok(body)) if body.lane() == Some(Lane::ToDrive) => body.message(),
-                _ => None,
-            };
-            let (before, now) = (self.drive.state(), self.drive.next_tick());
-            self.drive.link_received(*byte);
-            let after = self.drive.state();
-            let order = match &message {
-                Some(ToDrive::Command { order, .. }) => Some(*order),
-                _ => None,
-            };
-            assert!(
-                before != State::Faulted || after == before || order == Some(Order::ClearFault),
-                "{message:?} clears a fault"
-            );
-            assert!(
-                before == after || after != State::Armed,
-                "armed at once by {message:?}"
-            );
-            assert!(
-                before == after || after != State::Arming || order == Some(Order::Arm),
-                "{message:?} arms"
-            );
-            if let Some(ToDrive::Heartbeat(heartbeat)) = message {
-                self.note(now, &heartbeat);
-            }
-        }
-    }
-
-    fn note(&mut self, now: u64, heartbeat: &Heartbeat) {
-        self.has_restarted |= heartbeat.start != 0;
-        let seen = heartbeat.seen_tick;
-        let is_new = self.last_beat.is_none_or(|(start, number)| {
-            let ahead = heartbeat.number.wrapping_sub(number);
-            let is_silent =
-                (self.comms_start).is_none_or(|last| now.saturating_sub(last) >= HEARTBEAT_TICKS);
-            start != heartbeat.start || (1..128).contains(&ahead) || is_silent && ahead != 0
-        });
-        if is_new && seen <= now && now - seen <= STALE_TICKS {
-            self.last_beat = Some((heartbeat.start, heartbeat.number));
-            self.comms_start = Some(now);
-            self.lease_end = seen.saturating_add(u64::from(heartbeat.lease_left));
-            if !heartbeat.enable {
-                let state = self.drive.state();
-                assert!(matches!(state, State::Disarmed | State::Faulted));
-            }
-        }
-    }
-
     fn run(&mut self, ticks: u64, readings: &Readings) {
         for _ in 0..ticks {
             self.tick(readings);
@@ -465,121 +349,7 @@ impl Bench {
             "{revision} was never sent like this"
         );
     }
-
-    /// Lets the link's task run so often, and takes the frames it makes.
-    fn read(&mut self, runs: usize) {
-        for _ in 0..runs {
-            let drive = &self.drive;
-            let now = (drive.next_tick(), drive.state(), drive.revision());
-            // A status takes a few runs to be made.
-            self.states.truncate(STATUS_RUNS);
-            self.states.push_front(now);
-            if let Some(frame) = self.drive.link_to_send(true) {
-                self.received(&frame);
-            }
-        }
-        let counters = self.drive.counters();
-        let produced = u64::from(counters.get(DriveCounter::Produced));
-        let dropped = u64::from(counters.get(DriveCounter::Dropped));
-        let samples = BLOCK_SAMPLES as u64;
-        assert_eq!(produced, self.ticks / samples * samples);
-        let waiting = produced - dropped - self.received;
-        assert!(waiting <= 4 * samples, "{waiting} samples wait");
-    }
-
-    fn received(&mut self, frame: &[u8]) {
-        let mut found = 0;
-        for byte in frame {
-            let Some(body) = self.host.push(*byte) else {
-                continue;
-            };
-            let body = body.expect("a frame in order");
-            found += 1;
-            match body.lane() {
-                Some(Lane::FromDrive) => match body.message().expect("a message") {
-                    FromDrive::Status(status) => {
-                        let told = (status.tick, status.state, status.revision);
-                        // Of what another start of comms has sent, or one that it has not heard of, the drive
-                        // tells nothing.
-                        let is_other = self.has_restarted || status.comms_start.is_none();
-                        let is_so = |(tick, state, revision): &(u64, State, Revision)| {
-                            let is_told = status.revision == Revision::NONE && is_other;
-                            (*tick, *state) == (told.0, told.1) && (*revision == told.2 || is_told)
-                        };
-                        assert!(self.states.iter().any(is_so), "{told:?} was never so");
-                    }
-                    FromDrive::CrashPart(part) => {
-                        let expected = self.crash.chunks(PART_WORDS).nth(part.number.into());
-                        let words = part.words.as_ref().map(<[u32; PART_WORDS]>::as_slice);
-                        assert_eq!(words.is_some(), expected.is_some(), "{part:?}");
-                        let pairs = words.into_iter().zip(expected);
-                        assert!(
-                            pairs
-                                .into_iter()
-                                .all(|(words, expected)| words.starts_with(expected))
-                        );
-                    }
-                },
-                Some(Lane::ManagementAnswer) => {
-                    assert!(Answer::of(body.payload).is_some());
-                }
-                Some(Lane::Telemetry) => {
-                    let block = body.message().expect("a block");
-                    self.received += BLOCK_SAMPLES as u64;
-                    self.energised(&block);
-                    let end = self.received + u64::from(block_dropped(&block));
-                    assert_eq!(block.end_tick() - self.first_tick, end, "sample accounting");
-                    let blocks = (block.first_tick - self.first_tick) / BLOCK_SAMPLES as u64;
-                    let [low, high, ..] = blocks.to_le_bytes();
-                    let expected = self.sequence.wrapping_add(u16::from_le_bytes([low, high]));
-                    assert_eq!(block.sequence, expected);
-                }
-                other => panic!("{other:?} from the drive"),
-            }
-        }
-        assert_eq!(found, 1, "frames in a frame");
-    }
-
-    /// The samples say in which ticks there was torque.
-    fn energised(&self, block: &Block) {
-        let first = usize::try_from(block.first_tick - self.first_tick).expect("a few");
-        let ticks = self.energised.get(first..).unwrap_or_default();
-        for (sample, is_energised) in block.samples.iter().zip(ticks) {
-            let says = sample.flags.has(SampleFlags::ENERGISED);
-            assert_eq!(says, *is_energised, "{sample:?}");
-        }
-    }
-}
-
-/// Number of dropped samples that a block reports; its torque is held to its law on the way.
-fn block_dropped(block: &Block) -> u32 {
-    for sample in &block.samples {
-        let is_energised = sample.flags.has(SampleFlags::ENERGISED);
-        assert!(sample.torque_nm.abs() <= MOST_NM, "{sample:?}");
-        assert!(is_energised || sample.torque_nm == 0.0, "{sample:?}");
-    }
-    block.dropped
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Without torque most of the drive would never be searched.
-    #[test]
-    fn all_that_arming_needs_arms() {
-        let mut bench = Bench::new(&Boot {
-            self_test: SelfTest::default(),
-            identity: Identity::default(),
-            counter: 0,
-            start: 0,
-            tick: 0,
-            sequence: 0,
-            crash: None,
-        });
-        for input in [&[8][..], &[2, 0, 31]] {
-            bench.step(&mut Bytes::new(input));
-        }
-        assert_eq!(bench.drive.state(), State::Armed);
-    }
-}
+mod tests;

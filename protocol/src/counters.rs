@@ -90,7 +90,55 @@ mod tests {
                 assert!(list[..i].iter().all(|other| other.name != counter.name));
             }
         }
-        assert_eq!(DRIVE_COUNTERS[DriveCounter::Faults.index()].name, "faults");
-        assert_eq!(COMMS_COUNTERS[CommsCounter::Faults.index()].name, "faults");
+    }
+
+    /// Controllers count by variant, people read by name.
+    #[test]
+    fn every_counter_has_its_place_and_its_name() {
+        let drive: [_; DRIVE_COUNT] = [
+            (DriveCounter::Produced, "produced-samples"),
+            (DriveCounter::Dropped, "dropped-samples"),
+            (DriveCounter::Frames, "received-frames"),
+            (DriveCounter::Discarded, "discarded-frames"),
+            (DriveCounter::Foreign, "foreign-frames"),
+            (DriveCounter::Heartbeats, "heartbeats"),
+            (DriveCounter::StaleHeartbeats, "stale-heartbeats"),
+            (DriveCounter::StaleCommands, "stale-commands"),
+            (DriveCounter::Commits, "commits"),
+            (DriveCounter::RefusedCommits, "refused-commits"),
+            (DriveCounter::LostSamples, "lost-samples"),
+            (DriveCounter::LateTicks, "late-ticks"),
+            (DriveCounter::MissedCurrents, "missed-currents"),
+            (DriveCounter::LimitedTicks, "limited-ticks"),
+            (DriveCounter::Armings, "armings"),
+            (DriveCounter::Faults, "faults"),
+        ];
+        let comms: [_; COMMS_COUNT] = [
+            (CommsCounter::FromDrive, "drive-frames"),
+            (CommsCounter::FromDriveDiscarded, "drive-discarded-frames"),
+            (CommsCounter::FromHost, "host-frames"),
+            (CommsCounter::FromHostDiscarded, "host-discarded-frames"),
+            (CommsCounter::Foreign, "foreign-frames"),
+            (CommsCounter::ReceivedSamples, "received-samples"),
+            (CommsCounter::LostSamples, "lost-samples"),
+            (CommsCounter::DroppedSamples, "dropped-samples"),
+            (CommsCounter::SentSamples, "sent-samples"),
+            (CommsCounter::DroppedReplies, "dropped-replies"),
+            (CommsCounter::Requests, "requests"),
+            (CommsCounter::RepeatedRequests, "repeated-requests"),
+            (CommsCounter::Renewals, "lease-renewals"),
+            (CommsCounter::LeasesExpired, "expired-leases"),
+            (CommsCounter::DriveRestarts, "drive-restarts"),
+            (CommsCounter::Faults, "faults"),
+            (CommsCounter::NotOpen, "unopened-requests"),
+        ];
+        for (place, (counter, name)) in drive.into_iter().enumerate() {
+            assert_eq!(counter.index(), place, "{name}");
+            assert_eq!(DRIVE_COUNTERS[place].name, name);
+        }
+        for (place, (counter, name)) in comms.into_iter().enumerate() {
+            assert_eq!(counter.index(), place, "{name}");
+            assert_eq!(COMMS_COUNTERS[place].name, name);
+        }
     }
 }

@@ -258,9 +258,16 @@ impl Decoder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::{BODY_BYTES, CRC, encode_body};
+    use crate::frame::{BODY_BYTES, CRC, encode_body, encode_bytes, write};
+    use crate::host::{Answer, Operation, Reply, Request};
+    use crate::link::{DriveStatus, FromDrive, Heartbeat, ToDrive};
     use crate::reference;
+    use crate::telemetry::Block;
+    use crate::{Nonce, Session};
+    use core::fmt::Debug;
     use proptest::prelude::*;
+    use serde::Serialize;
+    use serde::de::DeserializeOwned;
     use std::vec::Vec;
 
     /// Decodes bytes; returns the bodies and the number of errors.
@@ -329,6 +336,45 @@ mod tests {
             let frame = encode_body(&body(length)).unwrap();
             assert_eq!(decode(&mut Decoder::new(), &frame), (Vec::new(), 1));
         }
+    }
+
+    /// Checks that this is a message in a frame of its lane, and none with bytes behind it.
+    fn check_its_end<T>(lane: Lane, message: &T)
+    where
+        T: Copy + Debug + PartialEq + Serialize + DeserializeOwned,
+    {
+        let mut buffer = [0; BODY_BYTES];
+        let written = write(message, &mut buffer).unwrap();
+        for extra in 0..3 {
+            let payload = [written, &[0, 1][..extra]].concat();
+            let frame = encode_bytes(lane, &payload).unwrap();
+            let mut decoder = Decoder::new();
+            let (_, found) = decoder.extend(&frame);
+            let body = found.unwrap().unwrap();
+            assert_eq!(body.lane(), Some(lane));
+            let expected = (extra == 0).then_some(*message);
+            assert_eq!(body.message::<T>(), expected, "{lane:?}, {extra} bytes");
+        }
+    }
+
+    #[test]
+    fn a_message_with_bytes_left_over_is_none() {
+        let request = Request {
+            session: Session(5),
+            nonce: Nonce(6),
+            number: 7,
+            operation: Operation::Disarm,
+        };
+        let reply = Reply {
+            session: Session(5),
+            number: 7,
+            answer: Ok(Answer::Done),
+        };
+        check_its_end(Lane::Request, &request);
+        check_its_end(Lane::Reply, &reply);
+        check_its_end(Lane::Telemetry, &Block::default());
+        check_its_end(Lane::ToDrive, &ToDrive::Heartbeat(Heartbeat::default()));
+        check_its_end(Lane::FromDrive, &FromDrive::Status(DriveStatus::default()));
     }
 
     #[test]

@@ -3,6 +3,10 @@
 //! Faults latch. The command `clear-fault` clears a fault once the bridge floats
 //! and the cause is gone.
 
+mod spec;
+
+pub use spec::{Detector, FaultSpec};
+
 /// A fault; its number is its code on the wire and never changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
@@ -56,47 +60,6 @@ pub enum Fault {
     CommsImageBroken = 46,
     DriveOptionBytes = 47,
     CommsOptionBytes = 48,
-}
-
-/// Controller that detects a fault.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Detector {
-    /// The drive controller.
-    Drive,
-    /// The comms controller.
-    Comms,
-}
-
-impl Detector {
-    /// Name for people.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Drive => "drive",
-            Self::Comms => "comms",
-        }
-    }
-}
-
-/// Description of a fault.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FaultSpec {
-    /// The fault.
-    pub fault: Fault,
-    /// Name.
-    pub name: &'static str,
-    /// Cause.
-    pub cause: &'static str,
-    /// Controller that detects it.
-    pub detector: Detector,
-    /// Detection criterion.
-    pub detection: &'static str,
-    /// Reaction.
-    pub reaction: &'static str,
-    /// Ticks of the drive (50 µs) from the cause until the bridge floats; `None`
-    /// if it floats already.
-    pub within_ticks: Option<u32>,
-    /// Remedy.
-    pub clear: &'static str,
 }
 
 const FLOAT: &str = "the bridge floats (coast)";
@@ -635,31 +598,4 @@ impl Fault {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The compiler does not ask for a row.
-    #[test]
-    fn every_fault_has_its_row() {
-        let source = include_str!("fault.rs");
-        let (_, list) = source.split_once("pub enum Fault {").expect("the list");
-        let (list, _) = list.split_once('}').expect("its end");
-        let codes = list.lines().filter_map(|line| {
-            let (_, code) = line.trim().strip_suffix(',')?.split_once(" = ")?;
-            code.parse::<u8>().ok()
-        });
-        assert!(codes.eq(FAULTS.map(|spec| spec.fault.code())));
-    }
-
-    #[test]
-    fn every_code_and_every_name_stands_once_in_order() {
-        for pair in FAULTS.windows(2) {
-            assert!(pair[0].fault.code() < pair[1].fault.code());
-        }
-        for (i, spec) in FAULTS.iter().enumerate() {
-            assert_eq!(Fault::find(spec.fault.code()), Some(spec));
-            assert!(FAULTS[..i].iter().all(|other| other.name != spec.name));
-        }
-        assert_eq!(Fault::find(0), None);
-    }
-}
+mod tests;

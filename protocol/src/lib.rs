@@ -25,6 +25,7 @@
 //! | messages between the controllers | [`link`] |
 //! | fragmentation of a commit on the link | [`pieces`] |
 //! | samples | [`telemetry`] |
+//! | missing samples, and who counts them | [`accounting`] |
 //! | the management lane, which never changes: hello, stop, reboot | [`management`] |
 //! | schema hash: compatibility of two programs | [`schema`] |
 //! | parameters: id, name, unit, range, default, meaning | [`parameters`] |
@@ -55,6 +56,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod accounting;
 mod array;
 mod checksum;
 pub mod chirp;

@@ -193,6 +193,19 @@ mod tests {
         assert_eq!(count(&all), 31);
     }
 
+    /// It equals the default, but the seal is over its bytes.
+    #[test]
+    fn a_negative_zero_for_a_default_of_zero_comes_back() {
+        let negative = |value: f64| if value == 0.0 { -0.0 } else { value };
+        let values = Values::default().0.map(negative);
+        let mut reassembly = Reassembly::new(seal(&values, 7), 7, count(&values));
+        for piece in pieces(&values) {
+            reassembly.add(&piece);
+        }
+        let whole = reassembly.values().map(|values| values.map(f64::to_bits));
+        assert_eq!(whole, Some(values.map(f64::to_bits)));
+    }
+
     #[test]
     fn a_heartbeat_waits_behind_less_than_60_bytes() {
         let body = 2 + crate::link::ToDrive::POSTCARD_MAX_SIZE;

@@ -407,6 +407,11 @@ mod tests {
         // A coarser encoder of the same joint.
         assert_eq!(with(&[(id::LINES, 73.1)]), Ok(()));
         assert_eq!(with(&[(id::LINES, 73.0)]), refused);
+        // The same while crepitus is off.
+        let off = (id::CREPITUS, 0.0);
+        assert_eq!(with(&[off, (id::KINETIC_TORQUE, 0.4)]), refused);
+        assert_eq!(with(&[off, (id::LINES, 73.1)]), Ok(()));
+        assert_eq!(with(&[off, (id::LINES, 73.0)]), refused);
         // A stick that begins at Tk loses less to a slip.
         let near = (id::KINETIC_TORQUE, at_limit - 1e-3);
         assert_eq!(with(&[near]), Ok(()));

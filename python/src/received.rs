@@ -4,7 +4,7 @@ use crate::errors;
 use crate::following::{failure, follow};
 use crepitus_client::connection::Connection;
 use crepitus_client::{Accounting, Client};
-use crepitus_recording::{Begin, RecordError, Recorder};
+use crepitus_recording::{RecordError, Recorder};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
@@ -28,11 +28,6 @@ pub(crate) fn recorded(
     stop: &AtomicBool,
 ) -> PyResult<()> {
     let begin = client.subscribe().map_err(failure)?;
-    let begin = Begin {
-        first_tick: begin.first_tick,
-        dropped: begin.dropped,
-        start: begin.start,
-    };
     recorder.subscribed(begin).map_err(not_recorded)?;
     let mut announced = None;
     follow(client, time, stop, |client, block| {

@@ -67,6 +67,18 @@ def test_a_restart_is_a_stick_where_the_shaft_is() -> None:
     assert (joint.torque_nm, joint.phase) == (pytest.approx(0.1), 0)
 
 
+@pytest.mark.parametrize("precision", ["f32", "f64"])
+def test_after_a_restart_it_is_a_new_joint_at_that_speed(precision: str) -> None:
+    new = Joint(convention="physical", precision=precision, omega_rad_s=0.5)
+    joint = Joint(convention="physical", precision=precision, omega_rad_s=1.0)
+    joint.steps(np.full(300, STEP_S), np.full(300, 1.0))
+    joint.restart(new.torque_nm, 0.5)
+    turns, omega = np.full(1_000, 0.5 * STEP_S), np.full(1_000, 0.5)
+    expected, states = new.steps(turns, omega), joint.steps(turns, omega)
+    for name, column in expected.items():
+        assert states[name].tolist() == column.tolist(), name
+
+
 def test_parameters_instead_of_a_preset() -> None:
     joint = Joint({"preset": "coarse", "static_torque_nm": 0.3}, restart="elastic")
     states = joint.steps(np.full(1000, STEP_S), np.full(1000, 1.0))

@@ -1,21 +1,9 @@
-//! Accounting of telemetry samples: produced, received, dropped, lost.
+//! Sums of the samples that a client has received, and of those that it misses. How a gap is found, and who
+//! counts it, is in [`crepitus_protocol::accounting`].
 //!
-//! ```text
-//! drive ──> comms ──> connection ──> this client
-//!   produced   └ dropped by the device     └ received
-//!                        └ lost on the connection
-//!
-//! produced = received + dropped by the device + lost on the connection
-//! ```
-//!
-//! Each block carries the number of samples that the device has not sent so far,
-//! and the answer to the subscription those before it; so all others that are missing were lost between the device and here. The
-//! sums are exact up to the last block received.
-//!
-//! When the drive restarts, its ticks restart, and a new *segment* begins; the
-//! sums continue. Blocks lost after a restart and before the first received one
-//! cannot be detected here and are not counted.
+//! When the drive restarts, a new *segment* begins; the sums continue.
 
+use crepitus_protocol::accounting::{Begin, StreamPosition, Taken};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 use std::collections::VecDeque;
 
@@ -33,23 +21,6 @@ pub struct Gap {
     pub samples: u64,
 }
 
-/// Relation of a block to the stream before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Taken {
-    /// A new block.
-    Next {
-        /// Samples missing before it.
-        missing: u64,
-    },
-    /// The first block after a restart of the drive.
-    Restarted {
-        /// Samples missing before it.
-        missing: u64,
-    },
-    /// A repeated block, or one older than the last.
-    Old,
-}
-
 /// Sample accounting of a subscription.
 #[derive(Clone, Debug)]
 pub struct Accounting {
@@ -65,43 +36,32 @@ pub struct Accounting {
     violations: u64,
 }
 
-/// Start of a stream of blocks.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Begin {
-    /// The first tick.
-    pub first_tick: u64,
-    /// Samples before it that the device has not sent.
-    pub dropped: u32,
-    /// The drive's start that counts them, as in the flags of its blocks.
-    pub start: u8,
-}
-
 /// Sums since the subscription started, or the drive restarted.
 #[derive(Clone, Copy, Debug)]
 struct Segment {
     first_tick: u64,
-    next_tick: u64,
+    position: StreamPosition,
     received: u64,
     /// Dropped by the device; unlike the counter in a block this does not wrap.
     dropped: u64,
-    said: u32,
-    start: u8,
 }
 
 impl Segment {
-    fn new(begin: Begin) -> Self {
+    fn new(first_tick: u64, position: StreamPosition) -> Self {
         Self {
-            first_tick: begin.first_tick,
-            next_tick: begin.first_tick,
+            first_tick,
+            position,
             received: 0,
             dropped: 0,
-            said: begin.dropped,
-            start: begin.start,
         }
     }
 
+    fn begin(begin: Begin) -> Self {
+        Self::new(begin.first_tick, StreamPosition::at(begin))
+    }
+
     fn produced(&self) -> u64 {
-        self.next_tick.saturating_sub(self.first_tick)
+        self.position.next_tick().saturating_sub(self.first_tick)
     }
 }
 
@@ -112,7 +72,7 @@ impl Accounting {
             produced: 0,
             received: 0,
             dropped: 0,
-            segment: Segment::new(begin),
+            segment: Segment::begin(begin),
             gaps: VecDeque::new(),
             gap_count: 0,
             restarts: 0,
@@ -123,55 +83,52 @@ impl Accounting {
 
     /// Accounts for the next block.
     pub fn take(&mut self, block: &Block) -> Taken {
-        let start = block.flags.start();
-        let is_restart = self.segment.start != start;
-        if is_restart {
-            // The device restarts its accounting, too.
-            self.resume(Begin {
-                first_tick: block.first_tick.saturating_sub(u64::from(block.dropped)),
-                dropped: 0,
-                start,
-            });
-            self.restarts += 1;
-        } else if block.first_tick < self.segment.next_tick {
-            self.old += 1;
-            return Taken::Old;
-        }
-        let segment = &mut self.segment;
-        let missing = block.first_tick.saturating_sub(segment.next_tick);
-        let gap = Gap {
-            first_tick: segment.next_tick,
-            samples: missing,
+        let mut position = self.segment.position;
+        let taken = position.take(block);
+        let missing = match taken {
+            Taken::Next(missing) => missing,
+            Taken::Restarted(missing) => {
+                self.restarts += 1;
+                self.enter(Segment::new(missing.first_tick, position));
+                missing
+            }
+            Taken::Old => {
+                self.old += 1;
+                return taken;
+            }
         };
-        segment.next_tick = block.end_tick();
+        let segment = &mut self.segment;
+        segment.position = position;
         segment.received += SAMPLES;
-        segment.dropped += u64::from(block.dropped.wrapping_sub(segment.said));
-        segment.said = block.dropped;
+        segment.dropped += missing.reported;
         // The device reports as dropped what has arrived here.
         if segment.received + segment.dropped > segment.produced() {
             self.violations += 1;
         }
-        if missing > 0 {
+        if missing.samples > 0 {
             self.gap_count += 1;
             if self.gaps.len() == GAPS {
                 self.gaps.pop_front();
             }
-            self.gaps.push_back(gap);
+            self.gaps.push_back(Gap {
+                first_tick: missing.first_tick,
+                samples: missing.samples,
+            });
         }
-        if is_restart {
-            Taken::Restarted { missing }
-        } else {
-            Taken::Next { missing }
-        }
+        taken
     }
 
     /// Resumes here after a lost connection. Samples produced in
     /// between are not counted.
     pub(crate) fn resume(&mut self, begin: Begin) {
+        self.enter(Segment::begin(begin));
+    }
+
+    fn enter(&mut self, segment: Segment) {
         self.produced += self.segment.produced();
         self.received += self.segment.received;
         self.dropped += self.segment.dropped;
-        self.segment = Segment::new(begin);
+        self.segment = segment;
     }
 
     /// Samples produced for the subscription.
@@ -202,7 +159,7 @@ impl Accounting {
     /// The tick after the last sample received; initially the first tick of the
     /// subscription.
     pub fn next_tick(&self) -> u64 {
-        self.segment.next_tick
+        self.segment.position.next_tick()
     }
 
     /// The first tick of the subscription, or since the drive's restart.

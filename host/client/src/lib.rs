@@ -76,8 +76,9 @@ mod transport;
 pub mod values;
 mod wire;
 
-pub use accounting::{Accounting, Begin, Gap, Taken};
+pub use accounting::{Accounting, Gap};
 pub use client::{Client, Tally, Unheard};
+pub use crepitus_protocol::accounting::Begin;
 pub use errors::{Conflict, Error};
 pub use event::{Arrival, Event, StateChange};
 pub use faults::{coil_fault_text, fault_text};

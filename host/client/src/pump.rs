@@ -1,12 +1,12 @@
 //! Events: blocks, changes of the status, loss of the connection.
 
-use crate::accounting::Taken;
 use crate::client::{Client, Lease};
 use crate::errors::Error;
 use crate::event::{Arrival, Event, StateChange};
 use crate::transport::{Transport, TransportError};
 use crate::wire::Incoming;
 use crepitus_protocol::State;
+use crepitus_protocol::accounting::Taken;
 use crepitus_protocol::host::{Answer, Operation, Refusal, Status};
 use crepitus_protocol::telemetry::Block;
 use std::time::Duration;
@@ -206,10 +206,10 @@ impl<T: Transport> Client<T> {
         }
         let missing = match accounting.take(&block) {
             Taken::Old => return,
-            Taken::Next { missing } => missing,
-            Taken::Restarted { missing } => {
+            Taken::Next(missing) => missing.samples,
+            Taken::Restarted(missing) => {
                 self.events.push_back(Event::DriveRestarted);
-                missing
+                missing.samples
             }
         };
         let state = Some(block.flags.state());

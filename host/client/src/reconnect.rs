@@ -1,6 +1,6 @@
 //! Reconnecting after a lost connection.
 
-use crate::accounting::{Accounting, Begin};
+use crate::accounting::Accounting;
 use crate::client::{Client, Lease};
 use crate::errors::Error;
 use crate::event::Event;
@@ -8,6 +8,7 @@ use crate::handshake::Handshake;
 use crate::loss::Loss;
 use crate::request_kind::RequestKind;
 use crate::transport::Transport;
+use crepitus_protocol::accounting::Begin;
 use crepitus_protocol::host::{Answer, Operation, Status};
 use std::time::Duration;
 

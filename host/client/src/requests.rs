@@ -1,6 +1,6 @@
 //! The requests.
 
-use crate::accounting::{Accounting, Begin};
+use crate::accounting::Accounting;
 use crate::client::{Client, Lease};
 use crate::errors::{Conflict, Error};
 use crate::event::Event;
@@ -8,6 +8,7 @@ use crate::handshake::Handshake;
 use crate::refusals::Refused;
 use crate::request_kind::RequestKind;
 use crate::transport::Transport;
+use crepitus_protocol::accounting::Begin;
 use crepitus_protocol::chirp::PlayedChirp;
 use crepitus_protocol::crash::{self, Controller, Head, Tick};
 use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Status};

@@ -194,11 +194,6 @@ impl Follower for Recorded {
     fn resumed(&mut self, begin: Begin) -> Result<(), Failure> {
         // The device's parameters may be others, also with the same revision.
         self.announced = None;
-        let begin = crepitus_recording::Begin {
-            first_tick: begin.first_tick,
-            dropped: begin.dropped,
-            start: begin.start,
-        };
         self.recorder.subscribed(begin).map_err(stopped)
     }
 

@@ -229,11 +229,3 @@ pub(crate) fn write(folder: Folder, out: &Path, files: Files) -> Result<(), Fail
     warn_of_other_pictures(out, &names);
     Ok(())
 }
-
-/// The last line of every report.
-pub(crate) fn footer() -> String {
-    format!(
-        "crepitus {} · research and education prototype, not a medical device",
-        env!("CARGO_PKG_VERSION")
-    )
-}

@@ -1,11 +1,17 @@
-//! Common parts of the verbs that carry out a study: the progress that they show,
-//! how they are interrupted, and where their times were measured.
+//! Common parts of the verbs that carry out a study: the progress that they show, how they are
+//! interrupted, their files, and what they print.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
+use crate::pictures::Pictures;
 use crate::progress::Progress;
-use crepitus_scene::cpu_time::CLOCK;
-use crepitus_studies::{Cancelled, StudyError, Watcher};
+use crate::results::{self, REPORT, report_files};
+use crate::screen::{All, screen};
+use crepitus_files::json_path;
+use crepitus_files::output::{Claim, Folder};
+use crepitus_studies::{Cancelled, Outcome, StudyError, Watcher};
+use serde_json::json;
+use std::path::Path;
 
 /// Moves the progress bar, and stops at Ctrl-C.
 pub(crate) struct Watch(Progress);
@@ -35,17 +41,48 @@ pub(crate) fn failed(error: StudyError) -> Failure {
     }
 }
 
-/// The computer that a study runs on, as its `summary.json` names it.
-pub(crate) fn host() -> String {
-    format!("{} {}", std::env::consts::ARCH, std::env::consts::OS)
+/// The folder of a study's results, not yet in place: page, summary, and these tables. Called before the
+/// work, so that what is in the way ends it early.
+pub(crate) fn folder(out: &Path, claim: Claim, tables: &[&str]) -> Result<Folder, Failure> {
+    results::folder(out, claim, REPORT.iter().chain(tables))
 }
 
-/// Computer, clock and build of the times of a study, for its page.
-pub(crate) fn measured_on(host: &str) -> String {
-    let build = if cfg!(debug_assertions) {
-        "a debug build: times mean little"
+/// Writes the files of a study, and moves their folder into place.
+pub(crate) fn write(
+    outcome: &impl Outcome,
+    (folder, out): (Folder, &Path),
+    pictures: &Pictures,
+) -> Result<(), Failure> {
+    let pictures = pictures.files(|paper| outcome.pictures(paper))?;
+    let mut files = report_files(outcome.page(), &outcome.summary(), pictures)?;
+    let tables = outcome.tables().into_iter();
+    files.extend(tables.map(|(name, content)| (name.to_owned(), content.into())));
+    results::write(folder, out, files)
+}
+
+/// Prints a study, and fails if what must hold does not.
+pub(crate) fn show<O: Outcome>(
+    outcome: &O,
+    out: &Path,
+    all: All,
+    as_json: bool,
+) -> Result<(), Failure> {
+    let broken = outcome.broken();
+    if as_json {
+        print_json(&json!({ "out": json_path(out), (O::JSON_KEY): outcome.summary() }))?;
+        // The summary has what is broken.
+        return broken.map_or(Ok(()), |_| Err(Failure::Negative));
+    }
+    for warning in outcome.warnings() {
+        warn(warning);
+    }
+    let (answer, report) = (outcome.answer(), out.join("report.html"));
+    let report = report.display();
+    print(&if all.all {
+        format!("{answer}\n\n{}\nreport: {report}\n", outcome.in_full())
     } else {
-        "a release build"
-    };
-    format!("{host}, {CLOCK}, {build}")
+        let last = format!("report: {report}; --all prints {}", O::REST);
+        screen(&answer, &outcome.in_short(), &last)
+    })?;
+    broken.map_or(Ok(()), |what| Err(Failure::Work(what)))
 }

@@ -14,6 +14,7 @@
 
 pub mod actuator;
 pub mod brace;
+mod descent;
 mod estimate;
 pub mod hanging;
 

@@ -7,6 +7,7 @@
 //! | the report of a run or a recording | [`report`] |
 //! | what a device's samples come to on it | [`recorded`] |
 //! | a torque as sound | [`sound`] |
+//! | the last line of a page, lines that fit | [`words`] |
 #![forbid(unsafe_code)]
 
 pub mod plot;
@@ -14,3 +15,4 @@ pub mod recorded;
 pub mod report;
 pub mod sound;
 pub mod table;
+pub mod words;

@@ -11,20 +11,24 @@
 //! | parameters and presets | `device_thread/knee.rs` |
 //! | lessons | `device_thread/lessons.rs` |
 //! | recordings | `device_thread/recording.rs` |
+//! | notes | `device_thread/notes.rs` |
+//! | the target of a hand, and its score | `device_thread/target.rs` |
 //! | status as a message | `device_thread/status.rs` |
 
 mod knee;
 mod lessons;
+mod notes;
 mod orders;
 mod recording;
 mod status;
+mod target;
 #[cfg(test)]
 mod tests;
 mod torque_end;
 
 use crate::frame::{Header, Kind, Masks, frame};
-use crate::live::{Aim, Envelope, Pace, Target};
-use crate::request::{AimAt, Request};
+use crate::live::{Envelope, Pace};
+use crate::request::Request;
 use crate::shared::{Latest, Order, Outcome, Shared};
 use axum::extract::ws::Utf8Bytes;
 use crepitus_client::{Client, Error, Event, Transport};
@@ -33,8 +37,9 @@ use crepitus_protocol::{Revision, Session, TICKS_PER_S, Values};
 use crepitus_recording::Samples;
 use crepitus_scene::preset::Preset;
 use lessons::Held;
+use notes::Note;
 use recording::Recorded;
-use serde_json::{Value, json};
+use serde_json::Value;
 use status::Speed;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::PathBuf;
@@ -63,12 +68,6 @@ const POLL: Duration = Duration::from_millis(2);
 /// Interval of attempts to connect again.
 const RECONNECT_EVERY: Duration = Duration::from_millis(500);
 
-/// Most characters of a note.
-const MOST_NOTE: usize = 500;
-
-/// Most notes that are kept.
-const MOST_NOTES: usize = 1_000;
-
 /// Services that the program around the panel provides.
 pub trait Program<T> {
     /// An error as text for people.
@@ -88,13 +87,6 @@ pub trait Program<T> {
 
     /// Returns whether the program has been asked to end.
     fn has_ended(&self) -> bool;
-}
-
-/// A note on the time line.
-struct Note {
-    time_s: f64,
-    text: String,
-    by: &'static str,
 }
 
 /// The thread that has the device.
@@ -439,80 +431,6 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         Ok(Value::Null)
     }
 
-    fn set_target(&mut self, target: Option<AimAt>) -> Outcome {
-        let target = match target {
-            None => None,
-            Some(AimAt::Named(name)) => Some(Target::find(&name).ok_or_else(|| {
-                let names: Vec<_> = crate::live::NAMED.iter().map(|t| t.name).collect();
-                format!("no target {name:?}: expected one of {}", names.join(", "))
-            })?),
-            Some(AimAt::Beat { beats_per_min }) => Some(own(Aim::Metronome { beats_per_min })?),
-            Some(AimAt::Band {
-                low_deg_per_s,
-                high_deg_per_s,
-            }) => Some(own(Aim::Speed {
-                low_deg_per_s,
-                high_deg_per_s,
-            })?),
-        };
-        self.pace = target.map(Pace::new);
-        self.publish_target();
-        Ok(Value::Null)
-    }
-
-    fn set_scoring(&mut self, running: bool) -> Outcome {
-        let Some(pace) = &mut self.pace else {
-            return Err("no target is chosen: choose one first".to_owned());
-        };
-        pace.set_scoring(running);
-        self.publish_target();
-        Ok(Value::Null)
-    }
-
-    fn publish_target(&mut self) {
-        self.score_at = Instant::now();
-        let target = match &self.pace {
-            None => json!({ "target": Value::Null }),
-            Some(pace) => {
-                let mut target = json!(pace.score());
-                target["target"] = json!(pace.target());
-                target["running"] = json!(pace.is_scoring());
-                target["verdict"] = json!(pace.verdict());
-                target
-            }
-        };
-        self.publish(|latest| &mut latest.target, &json!({ "target": target }));
-    }
-
-    fn add_note(&mut self, text: &str) -> Outcome {
-        let text = text.trim();
-        let count = text.chars().count();
-        if !(1..=MOST_NOTE).contains(&count) {
-            return Err(format!(
-                "a note has 1 to {MOST_NOTE} characters, got {count}"
-            ));
-        }
-        self.note_in_lesson(text)?;
-        self.push_note(text, "teacher");
-        Ok(json!({ "time_s": self.now_s }))
-    }
-
-    fn push_note(&mut self, text: &str, by: &'static str) {
-        if self.notes.len() >= MOST_NOTES {
-            return;
-        }
-        let note = Note {
-            time_s: self.now_s,
-            text: text.to_owned(),
-            by,
-        };
-        let message =
-            json!({ "note": { "time_s": note.time_s, "text": note.text, "by": note.by } });
-        self.notes.push(note);
-        let message = Utf8Bytes::from(message.to_string());
-        (self.shared.latest).send_modify(|latest| latest.notes.push(message));
-    }
-
     /// Publishes a message if it has changed.
     fn publish(&self, place: impl Fn(&mut Latest) -> &mut Utf8Bytes, message: &Value) {
         let message = Utf8Bytes::from(message.to_string());
@@ -525,10 +443,6 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             has_changed
         });
     }
-}
-
-fn own(aim: Aim) -> Result<Target, String> {
-    Target::own(aim).map_err(|error| error.to_string())
 }
 
 /// Now, ms since 1970.

@@ -6,15 +6,16 @@
 //! dropped  = by the device + on the way + while not connected + damaged in the file
 //! ```
 //!
-//! The accounting begins at the first tick of the subscription. Each block carries the
-//! number of samples that the device has not sent so far; what is missing
-//! beyond that was lost after it.
+//! The accounting begins at the first tick of the subscription. How a gap is found, and
+//! what of it the device counts, is in [`crepitus_protocol::accounting`]; what is missing beyond
+//! that was lost after it.
 
 mod recount;
 #[cfg(feature = "parquet")]
 mod row_count;
 
 use crate::ending::Ending;
+use crepitus_protocol::accounting::{Begin, Missing, StreamPosition, Taken};
 use crepitus_protocol::telemetry::Block;
 pub use recount::Recount;
 #[cfg(feature = "parquet")]
@@ -23,17 +24,6 @@ use serde::{Deserialize, Serialize};
 
 /// Limit of listed gaps; further ones are only counted.
 const LISTED_GAPS: usize = 1_000;
-
-/// Start of a subscription.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Begin {
-    /// First tick of the subscription.
-    pub first_tick: u64,
-    /// Samples before it that the device has not sent.
-    pub dropped: u32,
-    /// The drive's start that counts them, as in the flags of its blocks.
-    pub start: u8,
-}
 
 /// Cause of missing samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -207,11 +197,8 @@ impl SampleAccounting {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ledger {
     books: SampleAccounting,
-    /// Next tick of the current segment.
-    next_tick: u64,
-    start: Option<u8>,
-    /// The device's own count.
-    said: u32,
+    /// Place in the current segment.
+    position: Option<StreamPosition>,
     /// Beginnings of all segments, as they were reported.
     begins: Vec<Begin>,
     /// A part of the file before the next block is damaged.
@@ -223,35 +210,42 @@ pub(crate) struct Ledger {
 impl Ledger {
     /// A subscription begins, the first one or after a lost connection.
     pub(crate) fn subscribed(&mut self, begin: Begin) {
-        if self.start == Some(begin.start) && begin.first_tick >= self.next_tick {
-            let missing = begin.first_tick - self.next_tick;
-            self.books.gap(self.next_tick, missing, Cause::NotConnected);
-            self.books.totals.not_connected += missing;
-        } else if self.start.is_some() {
+        match self.position {
+            Some(position)
+                if position.start() == begin.start && begin.first_tick >= position.next_tick() =>
+            {
+                let missing = begin.first_tick - position.next_tick();
+                self.books
+                    .gap(position.next_tick(), missing, Cause::NotConnected);
+                self.books.totals.not_connected += missing;
+            }
             // Also with the same number, where its ticks have gone back: a device
             // that does not keep its count, or 32 restarts.
-            self.books.drive_restarts += 1;
+            Some(_) => self.books.drive_restarts += 1,
+            None => {}
         }
         self.begin(begin);
     }
 
     fn begin(&mut self, begin: Begin) {
         self.books.segment(begin.first_tick, begin.start);
-        self.next_tick = begin.first_tick;
-        self.start = Some(begin.start);
-        self.said = begin.dropped;
+        self.position = Some(StreamPosition::at(begin));
         self.begins.push(begin);
     }
 
     /// True if a subscription that begins like this one is older than what was read last.
     pub(crate) fn has_passed(&self, begin: Begin) -> bool {
-        let is_latest = self.start == Some(begin.start) && self.next_tick == begin.first_tick;
+        let is_latest = self.position.is_some_and(|position| {
+            position.start() == begin.start && position.next_tick() == begin.first_tick
+        });
         !is_latest && self.begins.contains(&begin)
     }
 
     /// True if ticks of the same start go back with it.
     pub(crate) fn goes_back(&self, begin: Begin) -> bool {
-        self.start == Some(begin.start) && begin.first_tick < self.next_tick
+        self.position.is_some_and(|position| {
+            position.start() == begin.start && begin.first_tick < position.next_tick()
+        })
     }
 
     /// Takes the next block; false, and nothing else, if it is not newer than
@@ -259,65 +253,70 @@ impl Ledger {
     #[must_use]
     pub(crate) fn block(&mut self, block: &Block) -> bool {
         let start = block.flags.start();
-        if self.start != Some(start) {
-            if self.is_past(start) {
-                return false;
-            }
-            let begin = if self.start.is_some() {
-                self.books.drive_restarts += 1;
-                // The device counts from its start, too.
-                Begin {
-                    first_tick: block.first_tick.saturating_sub(u64::from(block.dropped)),
-                    dropped: 0,
-                    start,
-                }
-            } else {
+        let mut position = match self.position {
+            Some(position) if position.start() != start && self.is_past(start) => return false,
+            Some(position) => position,
+            None => {
                 // Where the subscription began is damaged: what the device has counted so far may
                 // have been before it.
                 self.begin_is_unknown = true;
-                Begin {
+                let begin = Begin {
                     first_tick: block.first_tick,
                     dropped: block.dropped,
                     start,
-                }
-            };
-            self.begin(begin);
-        } else if block.first_tick < self.next_tick {
-            return false;
-        }
-        let missing = block.first_tick - self.next_tick;
-        let by_device = u64::from(block.dropped.wrapping_sub(self.said)).min(missing);
+                };
+                self.begin(begin);
+                StreamPosition::at(begin)
+            }
+        };
+        let missing = match position.take(block) {
+            Taken::Next(missing) => missing,
+            Taken::Restarted(missing) => {
+                self.books.drive_restarts += 1;
+                self.begin(Begin::after_restart(block));
+                missing
+            }
+            Taken::Old => return false,
+        };
+        self.missing(missing);
+        let totals = &mut self.books.totals;
+        let samples = block.samples.len() as u64;
+        totals.produced += samples;
+        totals.received += samples;
+        self.position = Some(position);
+        self.is_damaged = false;
+        true
+    }
+
+    /// Lists a gap by its cause.
+    fn missing(&mut self, missing: Missing) {
+        let by_device = missing.reported.min(missing.samples);
         let damaged = if self.is_damaged {
-            missing - by_device
+            missing.samples - by_device
         } else {
             0
         };
         let cause = match (damaged, by_device) {
             (1.., _) => Cause::Damaged,
             (_, 0) => Cause::OnTheWay,
-            _ if by_device == missing => Cause::Device,
+            _ if by_device == missing.samples => Cause::Device,
             _ => Cause::Both,
         };
-        self.books.gap(self.next_tick, missing, cause);
-        let totals = &mut self.books.totals;
-        totals.by_device += by_device;
-        totals.damaged += damaged;
-        let samples = block.samples.len() as u64;
-        totals.produced += samples;
-        totals.received += samples;
-        self.next_tick = block.end_tick();
-        self.said = block.dropped;
-        self.is_damaged = false;
-        true
+        self.books.gap(missing.first_tick, missing.samples, cause);
+        self.books.totals.by_device += by_device;
+        self.books.totals.damaged += damaged;
     }
 
     /// The recording has ended: samples up to that of the drive are missing.
     pub(crate) fn ended(&mut self, ending: &Ending) {
         let end = ending.produced_to_tick.unwrap_or(0);
-        let missing = end.saturating_sub(self.next_tick);
-        self.books.gap(self.next_tick, missing, Cause::OnTheWay);
+        let first_tick = self.next_tick();
+        let missing = match &mut self.position {
+            Some(position) => position.skip_to(end),
+            None => end,
+        };
+        self.books.gap(first_tick, missing, Cause::OnTheWay);
         self.books.missing_at_end = missing;
-        self.next_tick += missing;
     }
 
     /// True if this start of the drive is over. Their numbers have five bits.
@@ -368,160 +367,9 @@ impl Ledger {
 
     /// The tick after the last sample.
     pub(crate) fn next_tick(&self) -> u64 {
-        self.next_tick
+        self.position.map_or(0, |position| position.next_tick())
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crepitus_protocol::State;
-    use crepitus_protocol::telemetry::BlockFlags;
-
-    fn block(first_tick: u64, dropped: u32, start: u16) -> Block {
-        Block {
-            first_tick,
-            dropped,
-            flags: BlockFlags::new(State::Disarmed, false, start),
-            ..Block::default()
-        }
-    }
-
-    fn begin(first_tick: u64, dropped: u32, start: u8) -> Begin {
-        Begin {
-            first_tick,
-            dropped,
-            start,
-        }
-    }
-
-    /// A device that nobody listened to for an hour has not sent 72 million samples.
-    #[test]
-    fn without_the_begin_of_the_subscription_nothing_is_missing_before_the_first_block() {
-        let mut ledger = Ledger::default();
-        ledger.damaged();
-        assert!(ledger.block(&block(72_000_000, 72_000_000, 1)));
-        assert!(ledger.block(&block(72_000_040, 72_000_020, 1)));
-        let totals = ledger.accounting().totals;
-        assert_eq!((totals.produced, totals.received), (60, 40));
-        assert_eq!((totals.dropped, totals.by_device), (20, 20));
-        // What the recorder had is known from then on.
-        ledger.expect_received(100);
-        let books = ledger.into_books();
-        let totals = books.totals;
-        assert_eq!((totals.produced, totals.received), (120, 40));
-        assert_eq!(
-            (totals.dropped, totals.by_device, totals.damaged),
-            (80, 20, 60)
-        );
-        assert_eq!(books.segments[0].first_tick, 72_000_000 - 60);
-        assert_eq!((books.gap_count, books.gaps[0].samples), (2, 60));
-        let mut recount = Recount::new(&books);
-        (72_000_000..72_000_020).for_each(|tick| recount.row(tick));
-        (72_000_040..72_000_060).for_each(|tick| recount.row(tick));
-        assert_eq!(recount.differences(), Vec::<String>::new());
-    }
-
-    /// Every cause once: sums, gaps, and the recount of the same rows.
-    #[test]
-    fn every_missing_sample_has_a_cause() {
-        let mut ledger = Ledger::default();
-        let mut ticks = Vec::new();
-        let mut take = |ledger: &mut Ledger, block: &Block| {
-            assert!(ledger.block(block));
-            ticks.extend(block.first_tick..block.end_tick());
-        };
-        ledger.subscribed(begin(1_000, 60, 1));
-        // 20 on the way before the first block.
-        take(&mut ledger, &block(1_020, 60, 1));
-        // 40 by the device.
-        take(&mut ledger, &block(1_080, 100, 1));
-        // 20 by the device, 20 on the way.
-        take(&mut ledger, &block(1_140, 120, 1));
-        assert!(!ledger.block(&block(1_140, 120, 1)), "doubled");
-        ledger.damaged();
-        take(&mut ledger, &block(1_200, 120, 1));
-        // The connection is lost for 80 samples.
-        ledger.subscribed(begin(1_300, 180, 1));
-        take(&mut ledger, &block(1_300, 180, 1));
-        // The drive restarts and drops its first block.
-        take(&mut ledger, &block(20, 20, 2));
-        take(&mut ledger, &block(40, 20, 2));
-        let books = ledger.into_books();
-        assert_eq!(
-            books.totals,
-            Totals {
-                produced: 380,
-                received: 140,
-                dropped: 240,
-                by_device: 80,
-                not_connected: 80,
-                damaged: 40,
-            }
-        );
-        assert_eq!(books.totals.on_the_way(), 40);
-        let causes: Vec<_> = books.gaps.iter().map(|gap| (gap.row, gap.cause)).collect();
-        assert_eq!(
-            causes,
-            [
-                (0, Cause::OnTheWay),
-                (20, Cause::Device),
-                (40, Cause::Both),
-                (60, Cause::Damaged),
-                (80, Cause::NotConnected),
-                (100, Cause::Device),
-            ]
-        );
-        assert_eq!((books.drive_restarts, books.segments.len()), (1, 3));
-        let recount = |ticks: &[u64]| {
-            let mut recount = Recount::new(&books);
-            for tick in ticks {
-                recount.row(*tick);
-            }
-            recount.differences()
-        };
-        assert_eq!(recount(&ticks), [""; 0]);
-        for wrong in [0, 50, 139] {
-            let mut fewer = ticks.clone();
-            fewer.remove(wrong);
-            assert!(!recount(&fewer).is_empty(), "row {wrong} is missing");
-            let mut more = ticks.clone();
-            more.insert(wrong, ticks[wrong]);
-            assert!(!recount(&more).is_empty(), "row {wrong} is there twice");
-        }
-        let mut swapped = ticks.clone();
-        swapped.swap(30, 31);
-        assert!(!recount(&swapped).is_empty());
-    }
-
-    /// Damage by bytes out of order: no part of the file reads as damaged, what the recorder had says so.
-    #[test]
-    fn a_gap_of_samples_that_the_recorder_had_is_damaged() {
-        let causes = |received| {
-            let mut ledger = Ledger::default();
-            ledger.subscribed(begin(0, 0, 1));
-            assert!(ledger.block(&block(20, 0, 1)));
-            // 20 by the device, 20 that are not there.
-            assert!(ledger.block(&block(80, 20, 1)));
-            ledger.expect_received(received);
-            let books = ledger.into_books();
-            let gaps: Vec<_> = books.gaps.iter().map(|gap| gap.cause).collect();
-            (books.totals.damaged, gaps)
-        };
-        let [way, both] = [Cause::OnTheWay, Cause::Both];
-        assert_eq!(causes(40), (0, vec![way, both]));
-        assert_eq!(causes(60), (20, vec![way, both]), "which of them");
-        assert_eq!(causes(80), (40, vec![Cause::Damaged; 2]));
-    }
-
-    #[test]
-    fn a_restart_with_the_same_number_is_one() {
-        let mut ledger = Ledger::default();
-        ledger.subscribed(begin(1_000, 0, 1));
-        assert!(ledger.block(&block(1_000, 0, 1)));
-        ledger.subscribed(begin(200, 0, 1));
-        assert!(ledger.block(&block(200, 0, 1)));
-        let books = ledger.into_books();
-        assert_eq!((books.drive_restarts, books.totals.dropped), (1, 0));
-    }
-}
+mod tests;

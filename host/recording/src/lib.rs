@@ -37,9 +37,10 @@ mod row;
 mod samples;
 mod shaft;
 
-pub use accounting::{Begin, Cause, Gap, Recount, SampleAccounting, Segment, Totals};
+pub use accounting::{Cause, Gap, Recount, SampleAccounting, Segment, Totals};
 pub use arming::ArmingPushes;
 pub use column::{COLUMNS, Cell, Column};
+pub use crepitus_protocol::accounting::Begin;
 pub use damage::Damage;
 pub use ending::{EndCause, Ending};
 pub use findings::Findings;

@@ -19,6 +19,7 @@
 //! | the other symptoms: errors, and cost over a step of crepitus | [`symptoms`] |
 //! | orders of convergence, and on motions of other kinds | [`orders`], [`convergence`] |
 //! | limits, and the cheapest rung within them | [`need`], [`mod@answer`] |
+//! | what is printed, and the page's text | [`AccuracyOutcome`], [`need_words`] |
 
 pub mod actuator;
 pub mod answer;
@@ -38,6 +39,7 @@ pub mod study;
 pub mod symptoms;
 pub mod target;
 pub mod timing;
+mod words;
 
 pub use answer::{Question, answer};
 pub use need::Need;
@@ -45,3 +47,4 @@ pub use point::Point;
 pub use results::Study;
 pub use scenes::StudyScene;
 pub use study::{Plan, run};
+pub use words::{AccuracyOutcome, need as need_words};

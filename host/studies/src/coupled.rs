@@ -19,6 +19,7 @@
 //! | the criteria of the literature, and the linear system | `criteria` |
 //! | the map, the presets' margins, each effect | `study` |
 //! | files | [`tables`] |
+//! | what is printed, and the page's text | `words` |
 
 mod cell;
 mod criteria;
@@ -26,6 +27,7 @@ pub mod report;
 mod setting;
 mod study;
 pub mod tables;
+mod words;
 
 pub use cell::{Cell, Verdict};
 pub use criteria::{Criteria, most_share};

@@ -23,6 +23,7 @@
 //! | the whole study, its results, their file | [`study`], [`results`], [`effects_table`] |
 //! | limits, and the smallest set of effects within | [`tolerance`], `smallest`, [`mod@answer`] |
 //! | the time window that the report shows | `window` |
+//! | what is printed, and the page's text | `words` |
 //! | runs on all cores | `crate::parallel` |
 
 pub mod answer;
@@ -39,6 +40,7 @@ pub mod study;
 pub mod tolerance;
 pub mod variant;
 mod window;
+mod words;
 
 pub use answer::Answer;
 pub use refusal::{Refusal, refusal};

@@ -19,7 +19,8 @@
 //! | pictures that explain one hard case, or a build-up, each | [`story`] |
 //! | many runs of one scene, a row each | [`sweep`] |
 //!
-//! The page of a study, with its charts, is its module `report`: a study yields data, there it is decided how they are drawn.
+//! A study is one folder: its engine; `report`, how its data are drawn on its page; `words`, what is said of them on the
+//! page and on a terminal. [`Outcome`] is the form that all of them have.
 
 // Counts become numbers to be drawn or averaged; none comes near 2^53.
 #![allow(clippy::cast_precision_loss)]
@@ -29,7 +30,9 @@ pub mod coupled;
 pub mod effects;
 pub mod event_errors;
 pub mod limits;
+mod machine;
 pub mod matching;
+mod outcome;
 mod parallel;
 mod random;
 mod report_text;
@@ -44,5 +47,6 @@ pub mod watcher;
 
 pub use crepitus_pages::plot::page::Section;
 pub use crepitus_pages::plot::{Column, Paper, Picture};
+pub use outcome::Outcome;
 pub use report_text::StudyText;
 pub use watcher::{Cancelled, StudyError, Watcher};

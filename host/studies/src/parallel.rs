@@ -2,14 +2,19 @@
 
 use crate::watcher::{Cancelled, Watcher};
 use crepitus_model::Real;
+use std::io;
 use std::num::NonZero;
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
 /// Interval at which the watcher is called while no item ends.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
+
+/// Capacity of the queue of results, per thread.
+const WAITING: usize = 64;
 
 /// Work done, and whether it was cancelled.
 #[derive(Debug)]
@@ -57,37 +62,75 @@ pub(crate) fn each<T: Sync, R: Send>(
     work: impl Fn(&T) -> R + Sync,
 ) -> Result<Vec<R>, Cancelled> {
     let cores = thread::available_parallelism().map_or(1, NonZero::get);
-    let next = AtomicUsize::new(0);
+    let mut results: Vec<(usize, R)> = Vec::with_capacity(items.len());
+    let take = |result: Option<(usize, R)>| {
+        results.extend(result);
+        meter.report(watcher)
+    };
+    let work = |(place, item)| (place, work(item));
+    let threads = cores.min(items.len());
+    match pool(items.iter().enumerate(), threads, take, work) {
+        Ok(ended) => {
+            ended?;
+        }
+        // Not one thread: then here.
+        Err(_) => {
+            for (place, item) in items.iter().enumerate() {
+                results.push(work((place, item)));
+                meter.report(watcher)?;
+            }
+        }
+    }
+    results.sort_by_key(|(place, _)| *place);
+    Ok(results.into_iter().map(|(_, result)| result).collect())
+}
+
+/// Applies `work` to the items on so many threads, or fewer where the system gives fewer. `take` gets
+/// each result as it comes, and is called without one at least 20 times a second; once it fails no
+/// further item is begun. Returns the number of threads, or the error of `take`.
+///
+/// # Errors
+/// That of the system if not one thread could be started; nothing was done then.
+pub(crate) fn pool<T: Send, R: Send, E>(
+    items: impl Iterator<Item = T> + Send,
+    threads: usize,
+    mut take: impl FnMut(Option<R>) -> Result<(), E>,
+    work: impl Fn(T) -> R + Sync,
+) -> io::Result<Result<usize, E>> {
+    let items = Mutex::new(items);
     thread::scope(|scope| {
-        let (sender, receiver) = mpsc::channel();
-        for _ in 0..cores.min(items.len()) {
-            let (sender, next, work) = (sender.clone(), &next, &work);
-            scope.spawn(move || {
-                loop {
-                    let place = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(item) = items.get(place) else { break };
-                    if meter.is_stopped() || sender.send((place, work(item))).is_err() {
+        let (sender, results) = mpsc::sync_channel(WAITING * threads.max(1));
+        let mut running = 0;
+        for _ in 0..threads {
+            let (sender, items, work) = (sender.clone(), &items, &work);
+            let started = thread::Builder::new().spawn_scoped(scope, move || {
+                // A poisoned lock: another thread panicked outside of its work.
+                while let Some(item) = items.lock().ok().and_then(|mut items| items.next()) {
+                    if sender.send(work(item)).is_err() {
                         break;
                     }
                 }
             });
+            match started {
+                Ok(_) => running += 1,
+                Err(error) if running == 0 => return Err(error),
+                Err(_) => break,
+            }
         }
         drop(sender);
-        let mut results: Vec<(usize, R)> = Vec::with_capacity(items.len());
-        let mut reported = Ok(());
-        loop {
-            match receiver.recv_timeout(POLL_INTERVAL) {
-                Ok(result) => results.push(result),
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => break,
+        let taken = loop {
+            let result = match results.recv_timeout(POLL_INTERVAL) {
+                Ok(result) => Some(result),
+                Err(RecvTimeoutError::Timeout) => None,
+                Err(RecvTimeoutError::Disconnected) => break Ok(running),
+            };
+            if let Err(error) = take(result) {
+                break Err(error);
             }
-            if reported.is_ok() {
-                reported = meter.report(watcher);
-            }
-        }
-        reported?;
-        results.sort_by_key(|(place, _)| *place);
-        Ok(results.into_iter().map(|(_, result)| result).collect())
+        };
+        // Who waits to send ends, too.
+        drop(results);
+        Ok(taken)
     })
 }
 

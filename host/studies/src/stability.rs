@@ -16,6 +16,7 @@
 //! | an input as data, for a joint elsewhere | [`replay`] |
 //! | the file of results | [`cases_table`] |
 //! | runs that explain a case | [`story`] |
+//! | what is printed, and the page's text | [`StabilityOutcome`] |
 
 mod actuator;
 pub mod case;
@@ -43,6 +44,7 @@ mod symptom;
 pub(crate) mod text;
 pub mod verdict;
 mod without_steps;
+mod words;
 
 pub use case::{Case, Trial};
 pub use criterion::Criterion;
@@ -50,3 +52,4 @@ pub use input::Input;
 pub use matrix::{Cell, Matrix, Plan, Row, run};
 pub use subject::{Rung, Subject};
 pub use verdict::{Failure, Margin, Verdict};
+pub use words::{StabilityOutcome, markdown, value};

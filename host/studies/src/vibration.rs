@@ -13,6 +13,7 @@ pub mod perception;
 pub mod report;
 mod signals;
 pub mod tables;
+mod words;
 
 pub use chain::Step;
 pub use draws::{Draws, SPREAD, WITHIN};

@@ -20,7 +20,6 @@ pub mod play;
 pub mod range_limit;
 mod slewed;
 pub mod spasticity;
-mod static_limits;
 pub mod symptom;
 pub mod tank;
 pub mod texture;
@@ -31,7 +30,6 @@ pub use faded::Faded;
 pub use outliving::Outliving;
 pub use phases::{PhaseSpec, Phases};
 pub use slewed::Slewed;
-pub use static_limits::Reach;
 pub use together::MOST_SHARE_AT_A_WALL;
 
 use super::input_check::Checked;

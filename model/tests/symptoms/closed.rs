@@ -273,7 +273,7 @@ fn texture_in_patches_creaks_and_glides() {
         }),
         ..EffectSettings::default()
     };
-    assert!((settings.texture.unwrap().mean_nm() - (0.1 + 0.375 * 0.09)).abs() < 1e-12);
+    assert_eq!(settings.texture.unwrap().patches(), (8, 3));
     let run = only::<f64>(settings, 0.5).run(2.0, ramp(0.5, 60.0));
     let snaps = run.times(Word::Snap);
     // 120 deg are ten patches of three.

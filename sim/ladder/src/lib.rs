@@ -19,6 +19,7 @@
 //! | one step of each subject | [`measured`] |
 //! | the program | [`mod@serve`] |
 //! | cost of its steps | [`cost`] |
+//! | loops that are timed on the host | `loops` |
 //!
 //! A step is one call of one function that is never inlined. Its address is in
 //! the block, so that counting needs no symbols; copying inputs and outputs is
@@ -41,6 +42,8 @@ extern crate std;
 
 pub mod cost;
 pub mod exchange;
+#[cfg(feature = "loops")]
+pub mod loops;
 #[cfg(feature = "serve")]
 pub mod measured;
 pub mod plan;

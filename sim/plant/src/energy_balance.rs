@@ -91,13 +91,13 @@ impl EnergyBalance {
         self.held_j + moved
     }
 
-    /// The residual as a share of that.
+    /// The residual as a share of that; NaN if a term is no number.
     pub fn relative_residual(&self) -> f64 {
         let turnover = self.turnover_j();
-        if turnover > 0.0 {
-            self.residual_j() / turnover
-        } else {
+        if turnover == 0.0 {
             0.0
+        } else {
+            self.residual_j() / turnover
         }
     }
 }
@@ -123,6 +123,7 @@ mod tests {
         assert_eq!(open.residual_j(), 1.0);
         assert!((open.relative_residual() - 1.0 / 9.0).abs() < 1e-15);
         assert_eq!(EnergyBalance::default().relative_residual(), 0.0);
+        assert!(booked(5.0, f64::NAN, 2.0).relative_residual().is_nan());
         // Includes the initially stored energy, so that rounding is a small share.
         let still = booked(0.0, 3.0 + 1e-15, 0.0).since(&booked(0.0, 3.0, 0.0));
         assert!(still.relative_residual().abs() < 1e-15);

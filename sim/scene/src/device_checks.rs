@@ -1,7 +1,8 @@
 //! Checks of what a device renders, for scenes and for presets.
 
+use crate::static_limits::{Reach, largest_within_nm};
 use crepitus_model::control::device_limits::{LimitSettings, RangeSettings};
-use crepitus_model::render::effects::{EffectSettings, Reach, SYMPTOMS};
+use crepitus_model::render::effects::{EffectSettings, SYMPTOMS};
 use crepitus_model::{Convention, Parameters, Settings};
 
 /// Reason for which no device renders these settings, if none does.
@@ -26,7 +27,7 @@ pub fn caps_warning(
     range: &RangeSettings,
 ) -> Option<String> {
     let most_nm = limits.torque_nm;
-    let asked_nm = effects.largest_within_nm(joint, &Reach::of(range, limits));
+    let asked_nm = largest_within_nm(effects, joint, &Reach::of(range, limits));
     if asked_nm <= most_nm {
         return None;
     }

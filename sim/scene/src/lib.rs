@@ -14,6 +14,7 @@
 //! | the scenes that ship | [`shipped`] |
 //! | a knee with a disorder as a file, and those that ship | [`preset`] |
 //! | the parameters of a device that renders a scene or a preset | [`values`] |
+//! | the limits of a symptom's torque by angle, and the largest torque of all | [`static_limits`] |
 //! | the loop, the totals, the summary | [`mod@run`] |
 //! | the motion step by step, for who steps a plant himself | [`walk`] |
 //! | columns, rows and events | [`trace`] |
@@ -36,6 +37,7 @@ pub mod run;
 pub mod scene;
 pub mod shipped;
 pub mod similar;
+pub mod static_limits;
 pub mod trace;
 pub mod values;
 pub mod walk;

@@ -196,6 +196,27 @@ fn the_reference_of_a_scene_has_them_without_steps() {
 }
 
 #[test]
+fn what_happens_after_the_last_row_of_the_reference_is_an_event_too() {
+    // At 1 rad/s the wall is 20° ahead.
+    let text = "version = 1\ntitle = \"a rest\"\nduration_s = 0.37\n\
+                [motion]\nkind = \"constant\"\nfrom_deg = 100.0\nvelocity_rad_s = 1.0\n\
+                [solver]\nkind = \"reference\"\n[output]\ntrace_step_s = 0.1\n\
+                [effects.range-limit]\nflexion_limit_deg = 120.0\n";
+    let scene = Scene::parse(Path::new("rest.toml"), text, &Overrides::default()).unwrap();
+    let mut keep = Keep::default();
+    let Ok(_) = run(&scene, &mut keep) else {
+        panic!("it did not run");
+    };
+    assert_eq!(keep.rows.last().unwrap()[0], 0.3);
+    let [contact] = keep.events.as_slice() else {
+        panic!("{:?}", keep.events);
+    };
+    assert_eq!(contact.word.name(), "contact");
+    let late_s = contact.time_s - 20.0_f64.to_radians();
+    assert!(late_s.abs() < 1e-9, "{contact:?}");
+}
+
+#[test]
 fn symptoms_that_ask_for_more_than_the_device_shows_are_warned_of() {
     let warned = |device: bool, torque_nm: f64| {
         let text = format!(

@@ -9,22 +9,24 @@
 //! ```
 
 mod breakage;
+mod outputs;
+mod starts;
 
 use crate::leg::{CurrentPath, Leg, Terminals};
 use crate::storage::Storage;
 use crate::wire::Wire;
 use crepitus_device::comms::{self, Comms};
 use crepitus_device::drive::coil::CoilOutput;
-use crepitus_device::drive::command::{Inputs, Outputs};
+use crepitus_device::drive::command::Inputs;
 use crepitus_device::drive::motor::Bridge;
-use crepitus_device::drive::plausibility::TRIP_A;
 use crepitus_device::drive::slow_checks::SlowInput;
 use crepitus_device::drive::{self, Drive};
 use crepitus_device::self_test::SelfTest;
-use crepitus_protocol::crash::{End, Head};
-use crepitus_protocol::management::{Identity, ResetCause, Role};
+use crepitus_protocol::crash::Head;
+use crepitus_protocol::management::{ResetCause, Role};
 use crepitus_protocol::{Revision, TICK_US, ValueError, Values, schema};
 use crepitus_scene::Scene;
+use starts::identity;
 
 /// Ticks of the drive in a tick of comms.
 const COMMS_TICKS: u64 = 20;
@@ -143,25 +145,6 @@ pub struct Board {
     /// Schema hash of the drive's program, from its next start on.
     drive_schema: u64,
     tick: u64,
-}
-
-fn identity(role: Role, reset: ResetCause) -> Identity {
-    let part = |text: &str| text.parse().unwrap_or(0);
-    Identity {
-        role,
-        version: [
-            part(env!("CARGO_PKG_VERSION_MAJOR")),
-            part(env!("CARGO_PKG_VERSION_MINOR")),
-            part(env!("CARGO_PKG_VERSION_PATCH")),
-        ],
-        schema: schema::HASH,
-        serial: match role {
-            Role::Drive => *b"SIM-DRIVE-01",
-            _ => *b"SIM-COMMS-01",
-        },
-        image: 0,
-        reset,
-    }
 }
 
 impl Board {
@@ -309,59 +292,6 @@ impl Board {
         is_read.then(|| single(self.leg.coil_a()))
     }
 
-    /// The break of the coil's timer, which needs no program.
-    fn check_coil_driver(&mut self) {
-        if self.coil == CoilOutput::Asleep {
-            self.coil_tripped = false;
-        } else if self.leg.coil_faults().driver_fails {
-            self.coil_tripped = true;
-            self.leg.set_coil(None);
-        }
-    }
-
-    /// The comparator behind the monitor's amplifier, which needs no program.
-    fn check_comparator(&mut self) {
-        self.check_coil_driver();
-        if self.bridge == Bridge::Float {
-            self.comparator_tripped = false;
-        } else if self.trips && self.leg.current_a(CurrentPath::Monitor).abs() > f64::from(TRIP_A) {
-            self.comparator_tripped = true;
-            self.switch();
-        }
-    }
-
-    fn execute(&mut self, outputs: Outputs) {
-        self.drive_line.driven = outputs.enable;
-        self.bridge = outputs.bridge;
-        // Floating is immediate; a voltage loads with the next period.
-        if self.bridge == Bridge::Float || !self.drive_line.passes() {
-            self.leg.set_terminals(Terminals::Open);
-        }
-        self.coil = outputs.coil;
-        if self.coil == CoilOutput::Asleep || !self.coil_is_awake() {
-            self.leg.set_coil(None);
-        }
-    }
-
-    /// The bridge, as far as both lines enable it.
-    fn switch(&mut self) {
-        let terminals = match self.bridge {
-            Bridge::Driven(volts) if self.is_driven() => Terminals::Driven(f64::from(volts)),
-            _ => Terminals::Open,
-        };
-        self.leg.set_terminals(terminals);
-        let duty = match self.coil {
-            CoilOutput::Driven(duty) if self.coil_is_awake() => Some(f64::from(duty)),
-            _ => None,
-        };
-        self.leg.set_coil(duty);
-    }
-
-    /// The gate at the driver's nSLEEP, and the break of its timer.
-    fn coil_is_awake(&self) -> bool {
-        self.drive_line.is_on() && self.comms_line.is_on() && !self.coil_tripped
-    }
-
     /// Transfers bytes over the link.
     fn carry(&mut self) {
         let Self {
@@ -416,54 +346,6 @@ impl Board {
         }
         if !self.comms_line.is_on() {
             self.leg.set_coil(None);
-        }
-    }
-
-    fn start_due_controllers(&mut self) {
-        if let Health::StartsAt(tick, cause) = self.drive_health
-            && tick <= self.tick
-        {
-            if let Some(end) = end(cause) {
-                let start = self.starts[0].wrapping_sub(1);
-                self.drive_crash = Some(self.drive.ends(Head::new(start, end, 0)));
-            }
-            let boot = drive::Boot {
-                identity: Identity {
-                    schema: self.drive_schema,
-                    ..identity(Role::Drive, cause)
-                },
-                start: self.starts[0],
-                counter: self.leg.count().cast_unsigned(),
-                crash: self.drive_crash,
-                ..drive::Boot::default()
-            };
-            // The drive's defaults were valid at the first start.
-            if let Ok(drive) = Drive::new(&boot) {
-                self.drive = drive;
-                self.drive_health = Health::Runs;
-                self.starts[0] = self.starts[0].wrapping_add(1);
-            }
-        }
-        if let Health::StartsAt(tick, cause) = self.comms_health
-            && tick <= self.tick
-        {
-            self.storage.start();
-            if let Some(end) = end(cause) {
-                let start = self.starts[1].wrapping_sub(1);
-                self.comms_crash = Some(Head::new(start, end, 0));
-            }
-            self.comms = Comms::new(&comms::Boot {
-                self_test: SelfTest::default(),
-                identity: identity(Role::Comms, cause),
-                start: self.starts[1],
-                entropy: u64::from(self.starts[1]),
-                saved: self.storage.newest(),
-                counters: 0,
-                crash: self.comms_crash,
-            });
-            self.comms_health = Health::Runs;
-            self.starts[1] = self.starts[1].wrapping_add(1);
-            self.comms_has_restarted = true;
         }
     }
 
@@ -550,13 +432,4 @@ impl Board {
 #[expect(clippy::cast_possible_truncation, reason = "what a converter shows")]
 fn single(value: f64) -> f32 {
     value as f32
-}
-
-/// Kind of end of a program that was reset for this cause, if that is a crash.
-fn end(cause: ResetCause) -> Option<End> {
-    match cause {
-        ResetCause::Watchdog => Some(End::Watchdog),
-        ResetCause::Panic => Some(End::Panic),
-        ResetCause::Power | ResetCause::Requested | ResetCause::BrownOut => None,
-    }
 }

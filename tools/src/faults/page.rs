@@ -1,190 +1,120 @@
 //! Results of all faults, as a page of the book.
 
-use crate::faults::fault::Fault;
 use crate::faults::outcome::Outcome;
-use std::collections::BTreeSet;
+use crate::faults::patch::Fault;
 use std::fmt::Write;
 
+/// A fault and its outcome.
+pub type Tried = (Fault, Outcome);
+
 /// One fault in a line.
-pub fn line(outcome: &Outcome) -> String {
-    let cases: Vec<&str> = outcome.noticed_by().map(|case| case.id.as_str()).collect();
-    let cases = if cases.is_empty() {
-        "no case".to_owned()
-    } else {
-        cases.join(" ")
-    };
-    let test = match (&outcome.test, outcome.tested) {
-        (Some(test), _) => test,
-        (None, true) => "no test of the model",
-        (None, false) => "tests not run",
-    };
-    format!("{}: {cases}; {test}", outcome.name)
+pub fn line((fault, outcome): &Tried) -> String {
+    let name = &fault.name;
+    match (outcome, &fault.unseen) {
+        (Outcome::Noticed(by), _) => format!("{name}: noticed by {by}"),
+        (Outcome::NotNoticed, Some(why)) => format!("{name}: cannot be noticed: {why}"),
+        (Outcome::NotNoticed, None) => format!("{name}: NOT NOTICED"),
+        (Outcome::DoesNotBuild, _) => format!("{name}: does not build: see logs/{name}-*.txt"),
+    }
+}
+
+/// Returns whether something has to be done: the fault is not noticed and nobody says why, or it
+/// does not build.
+pub fn is_hole((fault, outcome): &Tried) -> bool {
+    match outcome {
+        Outcome::Noticed(_) => false,
+        Outcome::NotNoticed => fault.unseen.is_none(),
+        Outcome::DoesNotBuild => true,
+    }
 }
 
 /// Number of faults that are noticed, in a line.
-pub fn totals(outcomes: &[(Fault, Outcome)]) -> String {
-    let by_cases = outcomes.iter().filter(|(_, o)| o.noticed_by().count() > 0);
-    let tested = outcomes.iter().filter(|(_, o)| o.tested).count();
-    let by_tests = outcomes.iter().filter(|(_, o)| o.test.is_some()).count();
-    let tests = match tested {
-        0 => "the model's tests were not run".to_owned(),
-        all if all == outcomes.len() => format!("the model's tests {by_tests}"),
-        some => format!("the model's tests {by_tests} of the {some} that they were run on"),
-    };
+pub fn totals(tried: &[Tried]) -> String {
+    let noticed = tried.iter().filter(|(_, outcome)| is_noticed(outcome));
     format!(
-        "{} planted faults: the catalogue notices {}; {tests}.",
-        outcomes.len(),
-        by_cases.count(),
+        "{} planted faults: {} are noticed.",
+        tried.len(),
+        noticed.count()
     )
 }
 
-/// The page.
-pub fn page(outcomes: &[(Fault, Outcome)]) -> String {
+fn is_noticed(outcome: &Outcome) -> bool {
+    matches!(outcome, Outcome::Noticed(_))
+}
+
+/// The page, of faults in the order of their areas.
+pub fn page(tried: &[Tried]) -> String {
     let mut text = String::from(
         "# Planted faults\n\n\
-         Made by `cargo run -p crepitus-tools --bin crepitus-faults -- --page docs/generated/planted-faults.md`, which puts one fault at a time into a\n\
-         copy of the model and runs the [hard cases](hard-cases.md) and the model's tests on it. A check that never\n\
-         fails shows nothing; this page shows which check fails for what.\n\n",
+         Made by `cargo run -p crepitus-tools --bin crepitus-faults -- --page docs/generated/planted-faults.md`, which applies one patch of\n\
+         [`tools/faults`](../../tools/faults) at a time to a copy of the sources and runs the test that the patch names. A test that never\n\
+         fails shows nothing; this page shows which test fails for what. Faults of the firmware are in images that the emulator runs:\n\
+         modelled silicon, not hardware.\n\n",
     );
     // Writing to a String cannot fail.
-    let _ = writeln!(text, "{}\n", totals(outcomes));
-    unseen(&mut text, outcomes);
-    text.push_str("\n## Fault by fault\n\n| fault | what is wrong | hard cases | first test of the model |\n|---|---|---|---|\n");
-    for (fault, outcome) in outcomes {
-        let ids: Vec<&str> = outcome.noticed_by().map(|case| case.id.as_str()).collect();
-        let cases = match ids.as_slice() {
-            [] => "none".to_owned(),
-            [a, b, c, _, rest @ ..] if !rest.is_empty() => {
-                format!("{a} {b} {c} and {} more", rest.len() + 1)
-            }
-            few => few.join(" "),
-        };
-        let unseen = if outcome.tested { "none" } else { "not run" };
-        let test = outcome.test.as_deref().unwrap_or(unseen);
+    let _ = writeln!(text, "{}\n", totals(tried));
+    for (fault, _) in tried.iter().filter(|(_, outcome)| !is_noticed(outcome)) {
+        let why = fault.unseen.as_deref().unwrap_or("a hole");
+        let _ = writeln!(text, "- `{}` is not noticed: {why}", fault.name);
+    }
+    for area in tried.chunk_by(|(a, _), (b, _)| a.area == b.area) {
+        let name = area.first().map_or("", |(fault, _)| fault.area.as_str());
         let _ = writeln!(
             text,
-            "| `{}` | {} ({}) | {cases} | {test} |",
-            fault.name, fault.what, fault.file
+            "\n## {name}\n\n| fault | what is wrong | file | noticed by |\n|---|---|---|---|"
         );
-    }
-    matrix(&mut text, outcomes);
-    text
-}
-
-/// The faults that one side does not detect, with the reason.
-fn unseen(text: &mut String, outcomes: &[(Fault, Outcome)]) {
-    for (fault, outcome) in outcomes {
-        let sides = [
-            (
-                outcome.noticed_by().count() == 0,
-                "the hard cases",
-                &fault.unseen_by_cases,
-            ),
-            (
-                outcome.tested && outcome.test.is_none(),
-                "the model's tests",
-                &fault.unseen_by_tests,
-            ),
-        ];
-        for (_, who, why) in sides.into_iter().filter(|(is_unseen, ..)| *is_unseen) {
-            let why = why.as_deref().unwrap_or("a hole");
-            let _ = writeln!(text, "- `{}` is not noticed by {who}: {why}", fault.name);
+        for (fault, outcome) in area {
+            let what = fault.what.replace('|', "\\|");
+            let files: Vec<&str> = fault.changed_files().collect();
+            let files = if files.is_empty() {
+                "the image".to_owned()
+            } else {
+                files.join(", ")
+            };
+            let by = match outcome {
+                Outcome::Noticed(by) => format!("`{by}`"),
+                Outcome::NotNoticed => "nothing".to_owned(),
+                Outcome::DoesNotBuild => "the compiler".to_owned(),
+            };
+            let _ = writeln!(text, "| `{}` | {what} | {files} | {by} |", fault.name);
         }
     }
-}
-
-/// The matrix: a line a fault, a column a case that detects some fault.
-fn matrix(text: &mut String, outcomes: &[(Fault, Outcome)]) {
-    let ids: BTreeSet<&str> = outcomes
-        .iter()
-        .flat_map(|(_, outcome)| outcome.noticed_by())
-        .map(|case| case.id.as_str())
-        .collect();
-    let width = outcomes
-        .iter()
-        .map(|(f, _)| f.name.len())
-        .max()
-        .unwrap_or(0);
-    text.push_str("\n## Fault × case\n\nColumns are the cases that notice something, their numbers from top to bottom.\n\n```text\n");
-    let longest = ids.iter().map(|id| id.len()).max().unwrap_or(0);
-    for place in 1..longest {
-        let digits: String = ids
-            .iter()
-            .map(|id| id.chars().nth(place).unwrap_or(' '))
-            .collect();
-        let _ = writeln!(
-            text,
-            "{:width$} {digits} tests",
-            if place == 1 { "H" } else { "" }
-        );
-    }
-    for (fault, outcome) in outcomes {
-        let marks: String = ids
-            .iter()
-            .map(|id| {
-                let notices = outcome.noticed_by().any(|case| case.id == *id);
-                if notices { '#' } else { '·' }
-            })
-            .collect();
-        let test = match (&outcome.test, outcome.tested) {
-            (Some(_), _) => '#',
-            (None, true) => '·',
-            (None, false) => '?',
-        };
-        let _ = writeln!(text, "{:width$} {marks} {test}", fault.name);
-    }
-    text.push_str("```\n");
+    text
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::faults::outcome::CaseOutcome;
+    use std::path::Path;
 
-    fn tried(name: &str, noticed: bool) -> (Fault, Outcome) {
-        let fault = Fault {
-            name: name.to_owned(),
-            what: "a sign".to_owned(),
-            file: "model/src/solver/frozen.rs".to_owned(),
-            text: "+".to_owned(),
-            with: "-".to_owned(),
-            unseen_by_cases: (!noticed).then(|| "nothing changes".to_owned()),
-            unseen_by_tests: None,
-        };
-        let case = |id: &str, found: bool| CaseOutcome {
-            id: id.to_owned(),
-            found: found.then(|| "broken: other torque bits".to_owned()),
-        };
-        let outcome = Outcome {
-            name: name.to_owned(),
-            fingerprint: 1,
-            tested: true,
-            cases: vec![case("H01", false), case("H10", noticed)],
-            test: noticed.then(|| "laws: mirror".to_owned()),
-        };
-        (fault, outcome)
+    fn tried(area: &str, name: &str, why: &str, outcome: Outcome) -> Tried {
+        let file = format!("tools/faults/{area}/{name}.patch");
+        let text = format!("What: |a sign|\n{why}\n\n--- a/model/a.rs\n+++ b/model/a.rs\n");
+        (Fault::parse(Path::new(&file), &text).unwrap(), outcome)
     }
 
     #[test]
     fn a_page_says_what_noticed_and_why_not() {
-        let outcomes = [tried("sign", true), tried("silent", false)];
-        let text = page(&outcomes);
-        assert!(text.contains("2 planted faults: the catalogue notices 1; the model's tests 1."));
-        assert!(
-            text.contains("| `sign` | a sign (model/src/solver/frozen.rs) | H10 | laws: mirror |")
-        );
-        assert!(text.contains("- `silent` is not noticed by the hard cases: nothing changes"));
-        assert!(text.contains("- `silent` is not noticed by the model's tests: a hole"));
-        let mut later = tried("later", true);
-        (later.1.tested, later.1.test) = (false, None);
-        let untested = page(&[later]);
-        assert!(
-            untested.contains("the model's tests were not run") && untested.contains("| not run |")
-        );
-        assert!(!untested.contains("a hole"), "{untested}");
-        assert!(
-            text.contains("H      1 tests\n       0 tests\nsign   # #\nsilent · ·\n"),
-            "{text}"
-        );
+        let noticed = Outcome::Noticed("laws: mirror".to_owned());
+        let all = [
+            tried("firmware", "pin", "Noticed-by: -p a", noticed),
+            tried("model", "open", "Noticed-by: -p a", Outcome::NotNoticed),
+            tried("model", "silent", "Unseen: no change", Outcome::NotNoticed),
+        ];
+        assert_eq!(all.each_ref().map(is_hole), [false, true, false]);
+        let text = page(&all);
+        for part in [
+            "3 planted faults: 1 are noticed.",
+            "- `open` is not noticed: a hole\n- `silent` is not noticed: no change\n",
+            "## firmware\n\n| fault ",
+            "| `pin` | \\|a sign\\| | model/a.rs | `laws: mirror` |\n\n## model\n",
+            "| `open` | \\|a sign\\| | model/a.rs | nothing |\n",
+        ] {
+            assert!(text.contains(part), "{part} in\n{text}");
+        }
+        let lines = all.each_ref().map(line);
+        assert_eq!(lines[0], "pin: noticed by laws: mirror");
+        assert_eq!(lines[1], "open: NOT NOTICED");
+        assert_eq!(lines[2], "silent: cannot be noticed: no change");
     }
 }

@@ -1,4 +1,4 @@
-//! The scratch copy of the sources that faults are planted in.
+//! The scratch copy of the sources that faults and mutants are planted in.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -6,30 +6,11 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Entries of the root that a build of the model's tests and the hard cases
-/// does not need.
+/// Entries of the root that no test needs.
 const LEFT_OUT: [&str; 4] = [".git", "target", "out", "bench"];
 
-/// Folders that the outcome of a fault depends on.
-const DECIDES: [&str; 5] = [
-    "model",
-    "sim/ladder",
-    "sim/plant",
-    "sim/scene",
-    "host/studies",
-];
-
-/// Folders that the outcome of a fault of the firmware depends on.
-const FIRMWARE_DECIDES: [&str; 8] = [
-    "model",
-    "protocol",
-    "device",
-    "firmware",
-    "sim/plant",
-    "sim/scene",
-    "sim/virtual-device",
-    "sim/emulator",
-];
+/// Folders of the root that are taken to decide no outcome.
+const ASIDE: [&str; 2] = ["docs", "tools"];
 
 /// Makes `to` a copy of the sources in `from`, with other texts for some files.
 /// A file that is already the same is not written, so that it is not rebuilt.
@@ -55,10 +36,7 @@ pub fn copy(from: &Path, to: &Path, others: &BTreeMap<PathBuf, String>) -> io::R
 }
 
 /// Writes a file unless it holds these bytes already.
-///
-/// # Errors
-/// The file system's error.
-pub fn write_if_changed(path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn write_if_changed(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if fs::read(path).is_ok_and(|old| old == bytes) {
         return Ok(());
     }
@@ -73,30 +51,17 @@ pub fn write_if_changed(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// # Errors
 /// The file system's error.
 pub fn fingerprint(root: &Path) -> io::Result<u64> {
-    fingerprint_of(root, &DECIDES)
-}
-
-/// A number that changes with the sources that outcomes of faults of the firmware depend on.
-///
-/// # Errors
-/// The file system's error.
-pub fn firmware_fingerprint(root: &Path) -> io::Result<u64> {
-    fingerprint_of(root, &FIRMWARE_DECIDES)
-}
-
-fn fingerprint_of(root: &Path, folders: &[&str]) -> io::Result<u64> {
     let mut hasher = DefaultHasher::new();
-    for folder in folders {
-        for file in files(&root.join(folder))? {
-            file.hash(&mut hasher);
-            fs::read(root.join(folder).join(&file))?.hash(&mut hasher);
-        }
+    let decides = |file: &PathBuf| !ASIDE.iter().any(|folder| file.starts_with(folder));
+    for file in files(root)?.into_iter().filter(decides) {
+        file.hash(&mut hasher);
+        fs::read(root.join(&file))?.hash(&mut hasher);
     }
     Ok(hasher.finish())
 }
 
 /// All files below a folder, relative to it, in order.
-fn files(root: &Path) -> io::Result<Vec<PathBuf>> {
+pub(crate) fn files(root: &Path) -> io::Result<Vec<PathBuf>> {
     let (mut found, mut folders) = (Vec::new(), vec![PathBuf::new()]);
     while let Some(folder) = folders.pop() {
         for entry in fs::read_dir(root.join(&folder))? {

@@ -1,12 +1,14 @@
-//! The copy with all faults in it, built once, and one fault at a time in
-//! force.
+//! The copy of the sources with one fault at a time, and the test that has to notice it.
+//!
+//! A test of images is built without the fault and runs an image with it: registers, locks and
+//! the linker script are not in the test itself, and what it compares with is sound.
 
-use crate::faults::fault::{Fault, FaultError, plant};
-use crate::faults::outcome::{CaseOutcome, Outcome, failed_test, read_cases};
+use crate::faults::outcome::{Outcome, failed_test, has_passed};
+use crate::faults::patch::{Change, Fault, PatchError, Program};
 use crate::faults::process::{End, run};
 use crate::faults::tree::copy;
 use serde::Deserialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -16,40 +18,18 @@ use std::time::Duration;
 /// Timeout of a build, waiting for others included.
 const BUILD: Duration = Duration::from_hours(1);
 
-/// Timeout of a program: many times that of the slowest on a slow machine.
-const RUN: Duration = Duration::from_mins(3);
+/// Timeout of a test program: many times that of the slowest on a slow machine.
+const RUN: Duration = Duration::from_mins(15);
 
-/// The variable with the number of the active fault; 0 is none.
-const SWITCH: &str = "CREPITUS_FAULT";
-
-/// The crate of all faults.
-const CRATE: &str = "model/src/lib.rs";
-
-/// Code added to the copy's model for the faults.
-const PLANTED: &str = "
-/// The planted fault that is in force.
-#[allow(missing_docs)]
-pub mod planted {
-    extern crate std;
-
-    #[inline]
-    pub fn is(number: u32) -> bool {
-        static NOW: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
-        let now = NOW.get_or_init(|| {
-            let given = std::env::var(\"CREPITUS_FAULT\").ok();
-            given.and_then(|text| text.parse().ok()).unwrap_or(0)
-        });
-        *now == number
-    }
-}
-";
+/// Name of the logs of what runs without a fault.
+const SOUND: &str = "without-a-fault";
 
 /// Reason why a fault could not be tried.
 #[derive(Debug, thiserror::Error)]
 pub enum TrialError {
     /// The fault does not apply.
     #[error(transparent)]
-    Fault(#[from] FaultError),
+    Patch(#[from] PatchError),
     /// A file or a program failed.
     #[error("{what}: {source}")]
     Io {
@@ -58,12 +38,9 @@ pub enum TrialError {
         /// The cause.
         source: io::Error,
     },
-    /// The sources with the faults do not build.
-    #[error("the sources with the faults do not build: see {}", .0.display())]
+    /// The copy of the sources does not build.
+    #[error("the copy of the sources does not build: see {}", .0.display())]
     Build(PathBuf),
-    /// A fault of the firmware does not apply.
-    #[error("{0}")]
-    Firmware(String),
     /// Something fails without any fault.
     #[error("without a fault this fails: {0}")]
     Baseline(String),
@@ -77,36 +54,46 @@ pub(crate) fn io(what: &Path) -> impl FnOnce(io::Error) -> TrialError + '_ {
     }
 }
 
-/// The programs that detect faults.
-#[derive(Clone, Debug)]
+/// The copy of the sources, and programs built from it.
+#[derive(Debug)]
 pub struct Workshop {
     scratch: PathBuf,
     tree: PathBuf,
-    cases: PathBuf,
-    tests: Vec<Program>,
-    /// Every case, in the order of the catalogue.
-    all: Vec<String>,
+    cargo: String,
+    /// Images without a fault; empty until a test needs them.
+    sound: BTreeMap<Program, Vec<u8>>,
+    /// Arguments of tests that pass without a fault, and whether they run images.
+    passed: BTreeSet<(String, bool)>,
 }
 
-/// A built program.
-#[derive(Clone, Debug)]
-pub(crate) struct Program {
-    pub(crate) name: String,
-    pub(crate) path: PathBuf,
+/// A built test program.
+struct TestProgram {
+    name: String,
+    path: PathBuf,
+    /// Folder of its package.
+    folder: PathBuf,
 }
 
-/// Builds programs from the sources, or from a copy of them with faults.
-pub(crate) struct Builder<'a> {
-    pub(crate) scratch: &'a Path,
-    pub(crate) tree: &'a Path,
-    pub(crate) cargo: &'a str,
-    pub(crate) has_faults: bool,
+/// End of tests.
+enum Ran {
+    Passed,
+    /// No test has this name.
+    Nothing,
+    Failed(String),
+    NotBuilt,
 }
 
 #[derive(Deserialize)]
 struct Message {
     executable: Option<PathBuf>,
+    manifest_path: Option<PathBuf>,
+    profile: Option<Profile>,
     target: Option<Target>,
+}
+
+#[derive(Deserialize)]
+struct Profile {
+    test: bool,
 }
 
 #[derive(Deserialize)]
@@ -115,186 +102,237 @@ struct Target {
 }
 
 impl Workshop {
-    /// Copies the sources in `root`, plants all faults, builds the hard cases
-    /// and, `with_tests`, the model's tests, and makes sure that everything
-    /// holds while none is in force.
+    /// Copies the sources in `root`.
     ///
     /// # Errors
-    /// [`TrialError`] if a fault does not apply, the copy does not build, or
-    /// something fails without a fault.
-    pub fn open(
-        root: &Path,
-        scratch: &Path,
-        cargo: &str,
-        faults: &[Fault],
-        with_tests: bool,
-    ) -> Result<Self, TrialError> {
+    /// [`TrialError::Io`] if they cannot be copied.
+    pub fn open(root: &Path, scratch: &Path, cargo: &str) -> Result<Self, TrialError> {
+        let scratch = std::path::absolute(scratch).map_err(io(scratch))?;
         let tree = scratch.join("tree");
-        let mut planted: BTreeMap<PathBuf, String> = BTreeMap::new();
-        let mut by_file: BTreeMap<&str, Vec<(usize, &Fault)>> = BTreeMap::new();
-        for (n, fault) in faults.iter().enumerate() {
-            by_file.entry(&fault.file).or_default().push((n + 1, fault));
+        copy(root, &tree, &BTreeMap::new()).map_err(io(&tree))?;
+        for folder in ["logs", "images"] {
+            let folder = scratch.join(folder);
+            fs::create_dir_all(&folder).map_err(io(&folder))?;
         }
-        for (file, here) in by_file {
-            let path = root.join(file);
-            let source = fs::read_to_string(&path).map_err(io(&path))?;
-            planted.insert(PathBuf::from(file), plant(&source, &here)?);
-        }
-        let path = root.join(CRATE);
-        let source = fs::read_to_string(&path).map_err(io(&path))?;
-        planted.insert(PathBuf::from(CRATE), source + PLANTED);
-        copy(root, &tree, &planted).map_err(io(&tree))?;
-
-        let mut workshop = Self {
-            scratch: scratch.to_owned(),
-            tree,
-            cases: PathBuf::new(),
-            tests: Vec::new(),
-            all: Vec::new(),
-        };
-        let example = [
-            "build",
-            "-p",
-            "crepitus-studies",
-            "--example",
-            "broken_cases",
-        ];
-        let builder = Builder {
+        Ok(Self {
             scratch,
-            tree: &workshop.tree,
-            cargo,
-            has_faults: true,
-        };
-        let built = builder.build(&example)?;
-        workshop.cases = match built.into_iter().find(|b| b.name == "broken_cases") {
-            Some(program) => program.path,
-            None => return Err(TrialError::Build(workshop.scratch.join("build.txt"))),
-        };
-        if with_tests {
-            workshop.tests = builder.build(&["test", "-p", "crepitus-model", "--no-run"])?;
-        }
-        workshop.baseline()?;
-        Ok(workshop)
-    }
-
-    /// Tries the hard cases on fault `number`, counted from 1.
-    ///
-    /// # Errors
-    /// [`TrialError::Io`] if the program cannot be run.
-    pub fn try_cases(
-        &self,
-        number: usize,
-        fault: &Fault,
-        fingerprint: u64,
-    ) -> Result<Outcome, TrialError> {
-        let (end, text) = self.run_cases(number)?;
-        Ok(Outcome {
-            name: fault.name.clone(),
-            fingerprint,
-            cases: self.read(&text, end),
-            tested: false,
-            test: None,
+            tree,
+            cargo: cargo.to_owned(),
+            sound: BTreeMap::new(),
+            passed: BTreeSet::new(),
         })
     }
 
-    /// Tries the model's tests on fault `number`.
+    /// Runs the test that has to notice a fault, without it.
     ///
     /// # Errors
-    /// [`TrialError::Io`] if a program cannot be run.
-    pub fn try_tests(&self, number: usize, outcome: &mut Outcome) -> Result<(), TrialError> {
-        outcome.test = self.run_tests(number)?;
-        outcome.tested = true;
-        Ok(())
-    }
-
-    fn read(&self, text: &str, end: End) -> Vec<CaseOutcome> {
-        read_cases(text, end == End::Success, &self.all)
-    }
-
-    fn baseline(&mut self) -> Result<(), TrialError> {
-        let (end, text) = self.run_cases(0)?;
-        let line = text.lines().find(|line| !line.ends_with(" holds"));
-        if let Some(line) = line {
-            return Err(TrialError::Baseline(line.to_owned()));
+    /// [`TrialError::Baseline`] if it fails, or if there is no such test.
+    pub fn baseline(&mut self, fault: &Fault) -> Result<(), TrialError> {
+        let Some(arguments) = &fault.noticed_by else {
+            return Ok(());
+        };
+        let on_images = fault.program.is_some();
+        let test = (arguments.clone(), on_images);
+        if self.passed.contains(&test) {
+            return Ok(());
         }
-        let ids = text.lines().filter_map(|line| line.split_once(' '));
-        self.all = ids.map(|(id, _)| id.to_owned()).collect();
-        if end != End::Success || self.all.is_empty() {
-            return Err(TrialError::Baseline("broken_cases".to_owned()));
+        if on_images && self.sound.is_empty() {
+            for program in Program::ALL {
+                let image = self.build_image(program, SOUND)?;
+                let image = image.ok_or_else(|| TrialError::Build(self.log(SOUND, "image")))?;
+                self.place_image(program, &image)?;
+                self.sound.insert(program, image);
+            }
         }
-        match self.run_tests(0)? {
-            Some(test) => Err(TrialError::Baseline(test)),
-            None => Ok(()),
+        match self.run_tests(arguments, on_images, SOUND)? {
+            Ran::Passed => {
+                self.passed.insert(test);
+                Ok(())
+            }
+            Ran::Nothing => Err(TrialError::Baseline(format!(
+                "`cargo test {arguments}` runs no test"
+            ))),
+            Ran::Failed(test) => Err(TrialError::Baseline(test)),
+            Ran::NotBuilt => Err(TrialError::Build(self.log(SOUND, "build"))),
         }
     }
 
-    /// The hard cases with fault `number` in force.
-    fn run_cases(&self, number: usize) -> Result<(End, String), TrialError> {
-        let mut command = Command::new(&self.cases);
-        self.run(&mut command, number)
+    /// Plants a fault, runs the test that has to notice it, and restores the sources.
+    ///
+    /// # Errors
+    /// [`TrialError`] if the fault does not apply, or if the test fails without it.
+    pub fn attempt(&mut self, fault: &Fault) -> Result<Outcome, TrialError> {
+        self.baseline(fault)?;
+        let (name, changes) = (&fault.name, fault.apply(&self.tree)?);
+        let Some(arguments) = &fault.noticed_by else {
+            return Ok(Outcome::NotNoticed);
+        };
+        let ran = if let Some(program) = fault.program {
+            let image = self.with(&changes, || self.build_image(program, name))?;
+            let Some(mut image) = image else {
+                return Ok(Outcome::DoesNotBuild);
+            };
+            fault.edit_image(&mut image)?;
+            self.place_image(program, &image)?;
+            let ran = self.run_tests(arguments, true, name);
+            if let Some(sound) = self.sound.get(&program) {
+                self.place_image(program, sound)?;
+            }
+            ran?
+        } else {
+            self.with(&changes, || self.run_tests(arguments, false, name))?
+        };
+        Ok(match ran {
+            Ran::Passed | Ran::Nothing => Outcome::NotNoticed,
+            Ran::Failed(test) => Outcome::Noticed(test),
+            Ran::NotBuilt => Outcome::DoesNotBuild,
+        })
     }
 
-    /// The model's tests, program by program, until one fails: its name.
-    fn run_tests(&self, number: usize) -> Result<Option<String>, TrialError> {
-        for Program { name, path } in &self.tests {
-            let mut command = Command::new(path);
+    /// Does something while the copy has these changes.
+    fn with<T>(
+        &self,
+        changes: &BTreeMap<PathBuf, Change>,
+        work: impl FnOnce() -> Result<T, TrialError>,
+    ) -> Result<T, TrialError> {
+        for (file, change) in changes {
+            self.write(file, &change.now)?;
+        }
+        let done = work();
+        for (file, change) in changes {
+            self.write(file, &change.was)?;
+        }
+        done
+    }
+
+    fn write(&self, file: &Path, text: &str) -> Result<(), TrialError> {
+        let path = self.tree.join(file);
+        fs::write(&path, text).map_err(io(&path))
+    }
+
+    /// Builds test programs and runs them until one fails.
+    fn run_tests(&self, arguments: &str, on_images: bool, name: &str) -> Result<Ran, TrialError> {
+        let (cargo, own) = arguments.split_once(" -- ").unwrap_or((arguments, ""));
+        let Some(programs) = self.build_tests(cargo, name)? else {
+            return Ok(Ran::NotBuilt);
+        };
+        let log = self.log(name, "run");
+        let mut ran = Ran::Nothing;
+        for program in programs {
+            let mut command = Command::new(&program.path);
             command
-                .current_dir(self.tree.join("model"))
+                .args(own.split_whitespace())
+                .current_dir(&program.folder)
                 .env("PROPTEST_RNG_SEED", "1")
-                .env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "1");
-            let (end, text) = self.run(&mut command, number)?;
+                .env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "1")
+                .env_remove("CREPITUS_BLESS")
+                .env_remove("CREPITUS_LONG")
+                .env_remove("CREPITUS_IMAGES");
+            if on_images {
+                command.env("CREPITUS_IMAGES", self.scratch.join("images"));
+            }
+            let end = run(&mut command, &log, RUN).map_err(io(&log))?;
+            let text = fs::read_to_string(&log).map_err(io(&log))?;
             let which = match end {
-                End::Success => continue,
+                End::Success => {
+                    if has_passed(&text) {
+                        ran = Ran::Passed;
+                    }
+                    continue;
+                }
                 End::Timeout => "hangs",
                 End::Failure => failed_test(&text).unwrap_or("ends early"),
             };
-            return Ok(Some(format!(
-                "{}: {which}",
-                name.trim_start_matches("crepitus_")
-            )));
+            let program = program.name.trim_start_matches("crepitus_");
+            return Ok(Ran::Failed(format!("{program}: {which}")));
         }
-        Ok(None)
+        Ok(ran)
     }
 
-    fn run(&self, command: &mut Command, number: usize) -> Result<(End, String), TrialError> {
-        let log = self.scratch.join("run.txt");
-        command.env(SWITCH, number.to_string());
-        let end = run(command, &log, RUN).map_err(io(&log))?;
-        Ok((end, fs::read_to_string(&log).map_err(io(&log))?))
+    /// The test programs of these arguments of `cargo test`; `None` if they do not build.
+    fn build_tests(
+        &self,
+        arguments: &str,
+        name: &str,
+    ) -> Result<Option<Vec<TestProgram>>, TrialError> {
+        let log = self.log(name, "build");
+        let mut command = Command::new(&self.cargo);
+        command
+            .args(["test", "--locked", "--no-run", "--quiet"])
+            .args(["--message-format", "json"])
+            .args(arguments.split_whitespace())
+            .current_dir(&self.tree)
+            .env("CARGO_PROFILE_DEV_DEBUG", "false")
+            // A fault may leave something unused.
+            .env("RUSTFLAGS", "--cap-lints allow")
+            // Never that of the work tree: to Cargo the copy's crates are the
+            // same, and their faults would remain there.
+            .env("CARGO_TARGET_DIR", self.scratch.join("target"));
+        let end = run(&mut command, &log, BUILD).map_err(io(Path::new(&self.cargo)))?;
+        if end != End::Success {
+            return Ok(None);
+        }
+        let text = fs::read_to_string(&log).map_err(io(&log))?;
+        Ok(Some(text.lines().filter_map(test_program).collect()))
+    }
+
+    /// The bytes of a program's image; `None` if it does not build.
+    fn build_image(&self, program: Program, name: &str) -> Result<Option<Vec<u8>>, TrialError> {
+        let (log, program) = (self.log(name, "image"), program.name());
+        let target = self.scratch.join("firmware-target");
+        let mut command = Command::new(&self.cargo);
+        command
+            .args(["build", "--release", "--locked", "--package"])
+            .arg(format!("crepitus-firmware-{program}"))
+            .current_dir(self.tree.join("firmware"))
+            .env_remove("RUSTFLAGS")
+            .env("CARGO_TARGET_DIR", &target);
+        let end = run(&mut command, &log, BUILD).map_err(io(Path::new(&self.cargo)))?;
+        if end != End::Success {
+            return Ok(None);
+        }
+        let file = target.join("thumbv7em-none-eabihf/release").join(program);
+        fs::read(&file).map(Some).map_err(io(&file))
+    }
+
+    fn place_image(&self, program: Program, image: &[u8]) -> Result<(), TrialError> {
+        let place = self.scratch.join("images").join(program.name());
+        fs::write(&place, image).map_err(io(&place))
+    }
+
+    fn log(&self, name: &str, part: &str) -> PathBuf {
+        self.scratch.join(format!("logs/{name}-{part}.txt"))
     }
 }
 
-impl Builder<'_> {
-    /// Builds, and returns the programs.
-    pub(crate) fn build(&self, arguments: &[&str]) -> Result<Vec<Program>, TrialError> {
-        let log = self.scratch.join("build.txt");
-        let mut command = Command::new(self.cargo);
-        command
-            .args(arguments)
-            .args(["--quiet", "--message-format", "json"])
-            .current_dir(self.tree);
-        if self.has_faults {
-            command
-                // Each fault is in brackets, some of which are not needed.
-                .env("RUSTFLAGS", "--cap-lints allow")
-                // Never that of the work tree: to Cargo the copy's crates are the
-                // same, and their faults would remain there.
-                .env("CARGO_TARGET_DIR", self.scratch.join("target"));
-        }
-        let end = run(&mut command, &log, BUILD).map_err(io(Path::new(self.cargo)))?;
-        let text = fs::read_to_string(&log).map_err(io(&log))?;
-        if end != End::Success {
-            return Err(TrialError::Build(log));
-        }
-        Ok(text
-            .lines()
-            .filter_map(|line| serde_json::from_str::<Message>(line).ok())
-            .filter_map(|message| {
-                Some(Program {
-                    name: message.target?.name,
-                    path: message.executable?,
-                })
-            })
-            .collect())
+/// The test program that a line of Cargo's output names.
+fn test_program(line: &str) -> Option<TestProgram> {
+    let message: Message = serde_json::from_str(line).ok()?;
+    let is_test = message.profile?.test;
+    let program = TestProgram {
+        name: message.target?.name,
+        path: message.executable?,
+        folder: message.manifest_path?.parent()?.to_owned(),
+    };
+    is_test.then_some(program)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_test_programs_are_run() {
+        let line = |test: bool| {
+            format!(
+                r#"{{"reason": "compiler-artifact", "manifest_path": "/a/model/Cargo.toml", "target": {{"name": "laws"}},
+                    "profile": {{"opt_level": "1", "test": {test}}}, "executable": "/a/target/laws-1"}}"#
+            )
+        };
+        let program = test_program(&line(true)).unwrap();
+        assert_eq!(program.name, "laws");
+        assert_eq!(program.folder, Path::new("/a/model"));
+        assert!(test_program(&line(false)).is_none());
+        assert!(test_program(r#"{"reason": "build-finished", "success": true}"#).is_none());
     }
 }

@@ -1,54 +1,61 @@
 //! Every fault still applies to the sources as they are.
 
-use crepitus_tools::faults::fault::all;
-use crepitus_tools::faults::firmware;
-use std::collections::HashSet;
+use crepitus_tools::faults::patch::{Change, all};
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
-#[test]
-fn every_fault_has_its_place_in_the_sources() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let faults = all().expect("the list can be read");
-    assert!(faults.len() >= 36, "{} faults", faults.len());
-    let mut names = HashSet::new();
-    let mut broken = Vec::new();
-    for fault in &faults {
-        assert!(names.insert(&fault.name), "{} is there twice", fault.name);
-        assert!(!fault.what.trim().is_empty(), "{} says nothing", fault.name);
-        let path = root.join(&fault.file);
-        let source = std::fs::read_to_string(&path).expect("the file is there");
-        // Tests stand below the code, and a fault in them is none.
-        let code = source
-            .find("#[cfg(test)]\nmod tests")
-            .unwrap_or(source.len());
-        match fault.place(&source) {
-            Ok((start, end)) => {
-                assert!(end < code, "{} is planted in a test", fault.name);
-                assert_ne!(
-                    source[start..end],
-                    fault.with,
-                    "{} changes nothing",
-                    fault.name
-                );
-            }
-            Err(error) => broken.push(error.to_string()),
-        }
-    }
-    assert!(broken.is_empty(), "{}", broken.join("\n"));
+/// Areas, and how many faults each has at least.
+const LEAST: [(&str, usize); 2] = [("model", 36), ("firmware", 35)];
+
+/// Returns whether a fault is planted in a test, where it is none.
+fn is_in_a_test(file: &Path, change: &Change) -> bool {
+    let is_test_file = file
+        .iter()
+        .any(|part| part == "tests" || part == "tests.rs");
+    // Tests stand below the code.
+    let below = change.was.find("#[cfg(test)]\nmod tests {");
+    let tests = below.map_or("", |at| &change.was[at..]);
+    is_test_file || !change.now.ends_with(tests)
 }
 
 #[test]
-fn every_fault_of_the_firmware_has_its_place_in_the_sources() {
+fn every_patch_applies_to_the_sources_as_they_are() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let faults = firmware::all().expect("the list can be read");
-    assert!(faults.len() >= 35, "{} faults", faults.len());
-    let mut names = HashSet::new();
+    let faults = all(&root).unwrap_or_else(|error| panic!("{error}"));
+    let (mut names, mut wrong) = (HashSet::new(), Vec::new());
     for fault in &faults {
-        assert!(names.insert(&fault.name), "{} is there twice", fault.name);
-        let has_edit = !fault.edit.is_empty() || fault.image.is_some();
-        assert!(has_edit, "{} changes nothing", fault.name);
-        if let Err(error) = fault.sources(&root) {
-            panic!("{error}");
+        let patch = fault.file.display();
+        if !names.insert(&fault.name) {
+            wrong.push(format!("{patch}: another fault has this name: rename one"));
+        }
+        let changes = fault.apply(&root).unwrap_or_else(|error| {
+            wrong.push(error.to_string());
+            BTreeMap::new()
+        });
+        for (file, _) in (changes.iter()).filter(|(file, change)| is_in_a_test(file, change)) {
+            let file = file.display();
+            wrong.push(format!(
+                "{patch}: {file}: plant it in the code, not in a test"
+            ));
         }
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    for (area, least) in LEAST {
+        let there = faults.iter().filter(|fault| fault.area == area).count();
+        assert!(there >= least, "{there} faults in tools/faults/{area}");
+    }
+}
+
+#[test]
+fn a_change_of_a_test_is_none_of_the_code() {
+    let was = "fn a() {}\n#[cfg(test)]\nmod tests {\n    one();\n}\n".to_owned();
+    let change = |from: &str, to: &str| Change {
+        was: was.clone(),
+        now: was.replace(from, to),
+    };
+    let lib = Path::new("model/src/lib.rs");
+    assert!(!is_in_a_test(lib, &change("a()", "b()")));
+    assert!(is_in_a_test(lib, &change("one", "two")));
+    let test = Path::new("model/tests/laws.rs");
+    assert!(is_in_a_test(test, &change("a()", "b()")));
 }

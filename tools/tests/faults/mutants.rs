@@ -1,5 +1,6 @@
 //! A small crate whose mutants are noticed, missed, not reached, hang, or do not compile.
 
+use crate::write_crate;
 use crepitus_tools::faults::mutants::bench::{Bench, Fate};
 use crepitus_tools::faults::mutants::read;
 use std::fs;
@@ -47,24 +48,12 @@ fn listed(genre: &str, at: &str, replacement: &str) -> String {
     )
 }
 
-fn write(root: &Path) {
-    let folder = root.join("small/src");
-    fs::create_dir_all(&folder).expect("a folder");
-    let workspace = "[workspace]\nmembers = [\"small\"]\nresolver = \"3\"\n";
-    fs::write(root.join("Cargo.toml"), workspace).expect("a file");
-    let package = "[package]\nname = \"small\"\nversion = \"0.1.0\"\nedition = \"2024\"\n";
-    fs::write(root.join("small/Cargo.toml"), package).expect("a file");
-    let lock = "version = 4\n\n[[package]]\nname = \"small\"\nversion = \"0.1.0\"\n";
-    fs::write(root.join("Cargo.lock"), lock).expect("a file");
-    fs::write(folder.join("lib.rs"), SOURCE).expect("a file");
-}
-
 #[test]
 fn each_mutant_has_its_fate() {
     let here = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mutants");
     let _ = fs::remove_dir_all(&here);
     let (root, scratch) = (here.join("root"), here.join("scratch"));
-    write(&root);
+    write_crate(&root, SOURCE);
     fs::create_dir_all(&scratch).expect("a folder");
     let list = [
         listed("BinaryOperator", "+ b", "-"),

@@ -2,6 +2,7 @@
 
 use super::*;
 use crepitus_protocol::State;
+use crepitus_protocol::accounting::Missing;
 use crepitus_protocol::telemetry::BlockFlags;
 use proptest::prelude::*;
 
@@ -20,6 +21,15 @@ fn from(first_tick: u64) -> Begin {
         dropped: 0,
         start: 1,
     }
+}
+
+/// A block before which samples are missing, of which the device has reported some.
+fn next(first_tick: u64, samples: u64, reported: u64) -> Taken {
+    Taken::Next(Missing {
+        first_tick,
+        samples,
+        reported,
+    })
 }
 
 fn sums(accounting: &Accounting) -> [u64; 4] {
@@ -43,15 +53,9 @@ fn sums(accounting: &Accounting) -> [u64; 4] {
 #[test]
 fn what_is_missing_was_dropped_or_lost() {
     let mut accounting = Accounting::new(from(1_000));
-    assert_eq!(
-        accounting.take(&block(1_000, 0, 1)),
-        Taken::Next { missing: 0 }
-    );
+    assert_eq!(accounting.take(&block(1_000, 0, 1)), next(1_000, 0, 0));
     // Three blocks missing; the device has dropped one of them.
-    assert_eq!(
-        accounting.take(&block(1_080, 20, 1)),
-        Taken::Next { missing: 60 }
-    );
+    assert_eq!(accounting.take(&block(1_080, 20, 1)), next(1_020, 60, 20));
     assert_eq!(accounting.take(&block(1_080, 20, 1)), Taken::Old);
     assert_eq!(accounting.take(&block(1_020, 0, 1)), Taken::Old);
     assert_eq!(sums(&accounting), [100, 40, 20, 40]);
@@ -72,11 +76,13 @@ fn a_restart_of_the_drive_begins_a_segment() {
     accounting.take(&block(1_000, 0, 1));
     // The device has dropped the first two blocks after the restart.
     let taken = accounting.take(&block(60, 40, 2));
-    assert_eq!(taken, Taken::Restarted { missing: 40 });
-    assert_eq!(
-        accounting.take(&block(80, 40, 2)),
-        Taken::Next { missing: 0 }
-    );
+    let missing = Missing {
+        first_tick: 20,
+        samples: 40,
+        reported: 40,
+    };
+    assert_eq!(taken, Taken::Restarted(missing));
+    assert_eq!(accounting.take(&block(80, 40, 2)), next(80, 0, 0));
     assert_eq!(sums(&accounting), [20 + 80, 20 + 40, 40, 0]);
     assert_eq!((accounting.restarts(), accounting.first_tick()), (1, 20));
 }
@@ -86,7 +92,7 @@ fn a_restart_of_the_drive_begins_a_segment() {
 fn a_restart_before_the_first_block_is_one() {
     let mut accounting = Accounting::new(from(1_000));
     let taken = accounting.take(&block(20, 0, 2));
-    assert_eq!(taken, Taken::Restarted { missing: 0 });
+    assert!(matches!(taken, Taken::Restarted(missing) if missing.samples == 0));
     assert_eq!(sums(&accounting), [20, 20, 0, 0]);
 }
 

@@ -37,3 +37,20 @@ impl Clock {
         due.min(most)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_the_time_asleep_200_ms_are_caught_up_once() {
+        let awake = Instant::now();
+        let begun = awake.checked_sub(Duration::from_secs(50)).unwrap();
+        let mut clock = Clock { begun, ticks: 0 };
+        assert_eq!(clock.due_ticks(), 4_000);
+        let next: u64 = (0..10).map(|_| clock.due_ticks()).sum();
+        // However slow this computer is.
+        let passed = awake.elapsed().as_micros() / 50 + 1;
+        assert!(u128::from(next) <= passed, "{next} ticks, not {passed}");
+    }
+}

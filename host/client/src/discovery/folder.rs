@@ -67,8 +67,8 @@ fn is_own(folder: &Path) -> bool {
 /// [`user_folder`], made if it is not there.
 ///
 /// # Errors
-/// Of the system; [`io::ErrorKind::PermissionDenied`] if there is something of
-/// that name which other users can write to; [`io::ErrorKind::NotADirectory`] if it is no folder.
+/// Of the system; [`io::ErrorKind::PermissionDenied`] if something of that name belongs to
+/// another user; [`io::ErrorKind::NotADirectory`] if it is no folder.
 pub fn make_user_folder() -> io::Result<PathBuf> {
     let folder = user_folder();
     make_private(&folder)?;
@@ -131,9 +131,11 @@ mod tests {
         make_private(&folder).unwrap();
         let mode = || fs::metadata(&folder).unwrap().permissions().mode() & 0o777;
         assert_eq!(mode(), 0o700);
-        fs::set_permissions(&folder, fs::Permissions::from_mode(0o777)).unwrap();
-        make_private(&folder).unwrap();
-        assert_eq!(mode(), 0o700);
+        for open in [0o777, 0o770, 0o750, 0o705] {
+            fs::set_permissions(&folder, fs::Permissions::from_mode(open)).unwrap();
+            make_private(&folder).unwrap();
+            assert_eq!(mode(), 0o700, "{open:o}");
+        }
         let link = home.path().join("link");
         symlink(&folder, &link).unwrap();
         let file = home.path().join("file");

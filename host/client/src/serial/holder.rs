@@ -50,7 +50,12 @@ pub(super) fn is_pseudo_terminal(port: &str) -> bool {
 pub(super) fn group_of(port: &str) -> Option<String> {
     use std::os::unix::fs::MetadataExt;
     let id = fs::metadata(port).ok()?.gid().to_string();
-    let groups = fs::read_to_string("/etc/group").ok()?;
+    group_in(&fs::read_to_string("/etc/group").ok()?, &id)
+}
+
+/// The name of a group in the text of /etc/group; none of root's, which nobody is to join.
+#[cfg(unix)]
+fn group_in(groups: &str, id: &str) -> Option<String> {
     // name:password:id:members
     groups.lines().find_map(|line| {
         let mut fields = line.split(':');
@@ -77,5 +82,17 @@ mod tests {
         assert!(!holder.program.is_empty());
         let other = tempfile::tempdir().unwrap();
         assert_eq!(holder_of(other.path().to_str().unwrap()), None);
+    }
+
+    #[test]
+    fn the_group_of_a_port_is_found_by_its_number() {
+        // Passwords are no numbers of groups, even if they look like some.
+        let groups = "root:x:0:\ndialout:14:20:ada\n\nuucp:x:14:ada,bob\nplugdev::46:\n";
+        for (id, name) in [("20", "dialout"), ("14", "uucp"), ("46", "plugdev")] {
+            assert_eq!(group_in(groups, id).as_deref(), Some(name));
+        }
+        for id in ["0", "4", "x", ""] {
+            assert_eq!(group_in(groups, id), None, "{id}");
+        }
     }
 }

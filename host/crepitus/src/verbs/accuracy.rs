@@ -1,31 +1,24 @@
 //! `crepitus accuracy`: what accuracy costs in time, and the cheapest solver
 //! that is accurate enough, on the host or on the target.
 
-mod answer;
-mod headline;
-mod orders_table;
-mod page;
 mod plan;
-mod summary;
-mod symptoms;
-mod table;
 mod target;
-mod words;
 
 use crate::cli::Force;
 use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
-use crate::results::{self, REPORT};
-use crate::screen::{All, screen};
+use crate::screen::All;
 use crate::studying::{self, Watch};
 use clap::Args;
 use crepitus_files::json_path;
-use crepitus_studies::accuracy::actuator::actuator_table;
+use crepitus_scene::cpu_time::CLOCK;
 use crepitus_studies::accuracy::symptoms::SymptomPlan;
-use crepitus_studies::accuracy::{self, Need, Study, convergence, study};
+use crepitus_studies::accuracy::{
+    self, AccuracyOutcome, Need, Question, Study, convergence, need_words, study,
+};
+use plan::Studied;
 use serde_json::json;
-use std::path::PathBuf;
-use summary::Summary;
+use std::path::{Path, PathBuf};
 
 /// Show what accuracy costs in time: every solver against the reference.
 #[derive(Debug, Args)]
@@ -123,16 +116,16 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         (None, None) => Some(PathBuf::from("out/accuracy")),
         (None, Some(_)) => None,
     };
-    let prepare = |out| {
+    let is_whole = arguments.scene.is_none() && need.is_none();
+    let prepare = |out: &Path| {
         let claim = arguments.force.claim("accuracy", &arguments.scene);
-        let is_whole = arguments.scene.is_none() && need.is_none();
         let tables = [
             Some("points.csv"),
             is_whole.then_some("symptoms.csv"),
             arguments.target.then_some("cycles.csv"),
         ];
-        let names = REPORT.into_iter().chain(tables.into_iter().flatten());
-        results::folder(out, claim, names)
+        let tables: Vec<&str> = tables.into_iter().flatten().collect();
+        studying::folder(out, claim, &tables)
     };
     let folder = out.as_deref().map(prepare).transpose()?;
     // Fails before the work if the image cannot be built.
@@ -142,7 +135,6 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let scenes = &studied.plan.scenes;
         target::add(&mut study, scenes, arguments.quick, &mut ladder)?;
     }
-    let is_whole = arguments.scene.is_none() && need.is_none();
     if is_whole {
         let plan = SymptomPlan {
             steps_s: &studied.plan.steps_s,
@@ -162,59 +154,50 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let by_motion =
         by_motion.map_err(|e| Failure::Work(format!("the orders cannot be measured: {e}")))?;
     study.orders.extend_from_slice(&by_motion);
-    let summary = Summary::new(arguments.quick, &studied, &study);
-    if let (Some(folder), Some(out)) = (folder, &out) {
-        results::write(
-            folder,
-            out,
-            page::files(&study, &summary, &arguments.pictures)?,
-        )?;
+    let outcome = AccuracyOutcome {
+        study: &study,
+        by_motion: &by_motion,
+        precisions: &studied.plan.precisions,
+        is_quick: arguments.quick,
+    };
+    if let Some(place) = folder.zip(out.as_deref()) {
+        studying::write(&outcome, place, &arguments.pictures)?;
     }
-    match &need {
-        Some(need) => {
-            let all = arguments.all;
-            answer::print_answer(need, &studied, &study, out.as_deref(), all, as_json)
-        }
-        None if as_json => {
-            print_json(&json!({ "out": out.as_deref().map(json_path), "summary": summary }))
-        }
-        None => {
-            let report = out.unwrap_or_default().join("report.html");
-            let answer = headline::answer(&study);
-            if !arguments.all.all {
-                let last = format!("report: {}; --all prints every table", report.display());
-                return print(&screen(&answer, &headline::table(&study), &last));
-            }
-            let target = study.target.as_ref().map(target::table);
-            print(&format!(
-                "{answer}\n\n{}\n{}{}{}{}\nreport: {}\n",
-                table::at_the_tick(&study),
-                orders_table::by_motion(&by_motion),
-                with_a_line_before(&symptoms::table(&study.symptoms)),
-                with_a_line_before(&actuator(&study)),
-                target.map_or_else(String::new, |table| format!("\n{table}")),
-                report.display()
-            ))
-        }
+    if let Some(need) = &need {
+        let how = (arguments.all, as_json);
+        return answer(need, &studied, &study, out.as_deref(), how);
     }
+    let out = out.unwrap_or_default();
+    studying::show(&outcome, &out, arguments.all, as_json)
 }
 
-/// The stage of the vibration actuator; nothing if it was not studied.
-fn actuator(study: &Study) -> String {
-    if study.actuator.is_empty() {
-        return String::new();
-    }
-    format!(
-        "The command of the vibration actuator, 15 to 500 Hz, coarse at 1 rad/s:\n\n{}",
-        actuator_table(&study.actuator).to_markdown()
-    )
-}
-
-/// A paragraph of its own, if there is one.
-fn with_a_line_before(text: &str) -> String {
-    if text.is_empty() {
-        String::new()
+/// Prints the answer to a need; fails if nothing meets it.
+fn answer(
+    need: &Need,
+    studied: &Studied,
+    study: &Study,
+    out: Option<&Path>,
+    (all, as_json): (All, bool),
+) -> Result<(), Failure> {
+    let question = Question {
+        convention: studied.convention.name(),
+        precision: studied.precision.name(),
+        step_s: studied.step_s,
+        target: study.target.as_ref(),
+    };
+    let answer = accuracy::answer(&study.points, need, &question);
+    if as_json {
+        print_json(&json!({
+            "need": need, "question": question, "answer": answer, "out": out.map(json_path),
+            "chosen_by": if question.target.is_some() { "target cycles" } else { CLOCK },
+        }))?;
     } else {
-        format!("\n{text}")
+        let text = need_words::in_words(need, &question, study, &answer);
+        print(&all.limited(&text))?;
+    }
+    if answer.chosen.is_some() {
+        Ok(())
+    } else {
+        Err(Failure::Negative)
     }
 }

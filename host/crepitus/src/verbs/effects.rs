@@ -1,29 +1,21 @@
 //! `crepitus effects`: what effects there are; what each effect of a scene
 //! does to the torque at the hand and what it costs; the fewest that will do.
 
-mod build_up;
 mod list;
-mod page;
-mod smallest;
-mod summary;
-mod table;
 
 use crate::cli::{Force, key_and_value, set_once};
-use crate::failure::{Failure, print, print_json, warn};
+use crate::failure::{Failure, print, print_json};
 use crate::pictures::Pictures;
-use crate::results::{self, REPORT};
-use crate::screen::{All, screen};
-use crate::studying::Watch;
+use crate::results;
+use crate::screen::All;
+use crate::studying::{self, Watch};
 use clap::Args;
-use crepitus_files::json_path;
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, Scene, SceneError};
 use crepitus_studies::effects::{
     EffectsError, Plan, Refusal, Tolerance, refusal, run as study_effects,
 };
-use serde_json::json;
 use std::path::{Path, PathBuf};
-use summary::Summary;
 
 /// List the effects; or show what each effect of a scene does and costs.
 #[derive(Debug, Args)]
@@ -90,38 +82,10 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     };
     let inputs = results::inputs(path, [&plan.scene], None);
     let claim = arguments.force.claim("effects", inputs);
-    let folder = results::folder(&out, claim, [&REPORT[..], &["effects.csv"]].concat())?;
+    let folder = studying::folder(&out, claim, &["effects.csv"])?;
     let study = study_effects(&plan, &mut Watch::new()).map_err(|e| failed(&plan.scene, e))?;
-    let summary = Summary::new(&study);
-    results::write(
-        folder,
-        &out,
-        page::files(&study, &summary, &arguments.pictures)?,
-    )?;
-    if as_json {
-        return print_json(&json!({ "out": json_path(&out), "summary": summary }));
-    }
-    for warning in study.warnings.iter().chain(&summary::unsteady(&study)) {
-        warn(warning);
-    }
-    let answer = study.answer.as_ref();
-    let answer = answer.map_or_else(String::new, smallest::words);
-    let report = out.join("report.html");
-    let conclusion = &summary.conclusion;
-    print(&if arguments.all.all {
-        format!(
-            "{conclusion}\n{answer}\n{}\n{}\nreport: {}\n",
-            table::table(&study),
-            build_up::table(&study.build_up),
-            report.display()
-        )
-    } else if answer.is_empty() {
-        let last = format!("report: {}; --all prints every variant", report.display());
-        screen(conclusion, &table::short(&study), &last)
-    } else {
-        let last = format!("report: {}; --all prints every variant", report.display());
-        screen(conclusion, &answer, &last)
-    })
+    studying::write(&study, (folder, &out), &arguments.pictures)?;
+    studying::show(&study, &out, arguments.all, as_json)
 }
 
 fn plan(arguments: &Arguments, path: &Path) -> Result<Plan, Failure> {

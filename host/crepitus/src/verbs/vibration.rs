@@ -1,22 +1,17 @@
 //! `crepitus vibration`: what the hand gets of the grating, at each step of the chain
 //! from a bare knee to the actuator on the shell.
 
-mod table;
-
 use crate::cli::{Force, key_and_value, set_once};
-use crate::failure::{Failure, print, print_json};
+use crate::failure::Failure;
 use crate::pictures::Pictures;
-use crate::results::{self, REPORT, footer, report_files};
-use crate::studying::Watch;
+use crate::results;
+use crate::screen::All;
+use crate::studying::{self, Watch};
 use clap::{Args, value_parser};
-use crepitus_files::json_path;
 use crepitus_scene::scene::MotionKind;
 use crepitus_scene::shipped;
 use crepitus_scene::{Overrides, Scene};
-use crepitus_studies::StudyText;
-use crepitus_studies::vibration::report as page;
-use crepitus_studies::vibration::{Plan, VibrationError, VibrationStudy, run as study_vibration};
-use serde_json::json;
+use crepitus_studies::vibration::{Plan, VibrationError, run as study_vibration};
 use std::path::{Path, PathBuf};
 
 /// Show what the hand gets of the grating, with the actuator on the shell and without.
@@ -84,21 +79,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     };
     let out = arguments.out.clone().unwrap_or_else(|| out(&plan));
     let inputs = results::inputs(&arguments.scene, &plan.scenes, None);
-    let folder = results::folder(&out, arguments.force.claim("vibration", inputs), REPORT)?;
+    let claim = arguments.force.claim("vibration", inputs);
+    let folder = studying::folder(&out, claim, &[])?;
     let study = study_vibration(&plan, &mut Watch::new()).map_err(failed)?;
-    let html = page::html(&study, &text(&study));
-    let pictures = arguments
-        .pictures
-        .files(|paper| page::pictures(&study, paper))?;
-    results::write(folder, &out, report_files(html, &study, pictures)?)?;
-    if as_json {
-        return print_json(&json!({ "out": json_path(&out), "study": study }));
-    }
-    print(&format!(
-        "{}report: {}\n",
-        table::text(&study),
-        out.join("report.html").display()
-    ))
+    studying::write(&study, (folder, &out), &arguments.pictures)?;
+    studying::show(&study, &out, All { all: true }, as_json)
 }
 
 /// The scene at each speed, over the same way.
@@ -161,19 +146,6 @@ fn out(plan: &Plan) -> PathBuf {
         .to_owned();
     name.push("-vibration");
     Path::new("out").join(name)
-}
-
-fn text(study: &VibrationStudy) -> StudyText {
-    StudyText {
-        title: "What the hand gets".to_owned(),
-        intro: table::answer(study),
-        notes: vec![
-            "T/r: the force that a knee with the joint's torque T gives at the hand's lever r.".to_owned(),
-            "All of it is simulated. The hand's numbers are estimates, and the threshold is known to ±10 dB.".to_owned(),
-        ],
-        tables: Vec::new(),
-        footer: footer(),
-    }
 }
 
 fn failed(error: VibrationError) -> Failure {

@@ -235,6 +235,24 @@ fn a_file_of_a_killed_program_is_its_own() {
 }
 
 #[test]
+fn files_are_on_the_list_before_the_first_of_them_appears() {
+    let home = tempfile::tempdir().unwrap();
+    let mut folder = OwnedFolder::open(home.path(), claim()).unwrap();
+    let hashed = |name: &str| {
+        let path = folder.temporary().unwrap().into_temp_path();
+        (name.to_owned(), Hashed::of(path).unwrap())
+    };
+    let files = vec![hashed("a.txt"), hashed("b.txt")];
+    // The second one cannot be moved any more.
+    fs::remove_file(&files[1].1.path).unwrap();
+    let error = folder.put_all(files).unwrap_err();
+    assert!(matches!(error, OutputError::Io { .. }), "{error}");
+    assert_eq!(names(home.path()), ["a.txt"]);
+    let folder = OwnedFolder::open(home.path(), claim()).unwrap();
+    assert_eq!(folder.state("a.txt").unwrap(), State::Own);
+}
+
+#[test]
 fn a_subfolder_is_removed_with_own_files_alone() {
     let home = tempfile::tempdir().unwrap();
     let outer = OwnedFolder::open(home.path(), claim()).unwrap();

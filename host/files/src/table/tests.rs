@@ -46,6 +46,17 @@ fn line_ends_marks_and_padding_say_nothing() {
     }
 }
 
+/// The first 8,192 bytes are a buffer: with one of the shifts it ends between CR and LF.
+#[test]
+fn a_cr_lf_that_two_buffers_share_ends_one_line() {
+    for shift in 0..6 {
+        let names = format!("time,knee{}\r\n", " ".repeat(shift));
+        let text = names + &"0,30\r\n".repeat(2_000) + "1\r\n";
+        let error = read(text.as_bytes(), &["time", "knee"]).unwrap_err();
+        assert!(error.starts_with("line 2002: "), "shift {shift}: {error}");
+    }
+}
+
 #[test]
 fn separators_and_decimal_commas_are_recognised() {
     let german = CSV.replace(',', ";").replace('.', ",");

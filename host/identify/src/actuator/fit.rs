@@ -15,13 +15,16 @@ use crate::actuator::impedance::{Column, Impedance, NUMBERS, Square};
 use crate::actuator::second::second;
 use crate::actuator::spectrum::{Line, Spectrum};
 use crate::actuator::start::start;
+use crate::descent::{Ending, Equations, LeastSquares, descend};
 use crepitus_plant::spectrum::Complex;
+use nalgebra::Const;
 
-/// Most iterations; about ten are usual.
-const MOST_STEPS: u32 = 100;
-
-/// Relative decrease of the cost below which the fit has converged.
-const SMALLEST_GAIN: f64 = 1e-12;
+/// End of the descent; about ten steps are usual.
+const ENDING: Ending = Ending {
+    steps: 100,
+    gain: 1e-12,
+    caution: (1e-12, 1e12),
+};
 
 /// Uncertainty of noise and residual, each estimated from a few thousand spectral lines: two standard
 /// errors of 2 %.
@@ -92,33 +95,10 @@ impl Fit {
     pub(crate) fn of(spectrum: &Spectrum) -> Option<Self> {
         let lines = &spectrum.lines;
         let means: Vec<Mean> = bands(lines).map(Mean::of).collect();
-        let mut impedance = start(&means)?;
-        let (mut normal, mut right, mut left) = equations(lines, &impedance);
-        let mut caution = 1e-3;
-        for _ in 0..MOST_STEPS {
-            let mut cautious = normal;
-            for i in 0..NUMBERS {
-                cautious[(i, i)] += caution * normal[(i, i)];
-            }
-            let step = cautious.cholesky()?.solve(&right);
-            let next = impedance.stepped(&step);
-            let (next_normal, next_right, next_left) = equations(lines, &next);
-            if next_left < left {
-                let gain = (left - next_left) / left;
-                (impedance, normal, right, left) = (next, next_normal, next_right, next_left);
-                caution = (caution / 10.0).max(1e-12);
-                if gain < SMALLEST_GAIN {
-                    break;
-                }
-            } else {
-                caution *= 10.0;
-                if caution > 1e12 {
-                    break;
-                }
-            }
-        }
+        let impedance = descend(&Lines(lines), start(&means)?, ENDING)?;
+        let normal = Lines(lines).equations(&impedance).normal;
         let degrees = (2 * lines.len()).checked_sub(NUMBERS).filter(|n| *n > 0)?;
-        let variance = left / degrees as f64;
+        let variance = Lines(lines).cost(&impedance) / degrees as f64;
         let residual = Residual::of(spectrum, &impedance, &normal, variance);
         let covariance =
             normal.cholesky()?.inverse() * (variance * correlation(lines, &impedance, variance));
@@ -135,27 +115,41 @@ impl Fit {
     }
 }
 
-/// Returns the normal equations: JᵀJ, Jᵀr and |r|².
-fn equations(lines: &[Line], impedance: &Impedance) -> (Square, Column, f64) {
-    let (mut normal, mut right, mut left) = (Square::zeros(), Column::zeros(), 0.0);
-    for line in lines {
-        let (admittance, derivatives) = impedance.admittance(line.omega);
-        let residual = line.amperes - admittance * line.volts;
-        left += residual.norm_sqr();
-        let columns = derivatives.map(|derivative| derivative * line.volts);
-        for i in 0..NUMBERS {
-            right[i] += (columns[i].conj() * residual).re;
-            for j in 0..=i {
-                normal[(i, j)] += (columns[i].conj() * columns[j]).re;
+/// The squares of what each line leaves of the current.
+struct Lines<'l>(&'l [Line]);
+
+impl LeastSquares<Const<NUMBERS>> for Lines<'_> {
+    type Point = Impedance;
+
+    fn equations(&self, impedance: &Impedance) -> Equations<Const<NUMBERS>> {
+        let (mut normal, mut right) = (Square::zeros(), Column::zeros());
+        for line in self.0 {
+            let (admittance, derivatives) = impedance.admittance(line.omega);
+            let residual = line.amperes - admittance * line.volts;
+            let columns = derivatives.map(|derivative| derivative * line.volts);
+            for i in 0..NUMBERS {
+                right[i] += (columns[i].conj() * residual).re;
+                for j in 0..=i {
+                    normal[(i, j)] += (columns[i].conj() * columns[j]).re;
+                }
             }
         }
-    }
-    for i in 0..NUMBERS {
-        for j in 0..i {
-            normal[(j, i)] = normal[(i, j)];
+        for i in 0..NUMBERS {
+            for j in 0..i {
+                normal[(j, i)] = normal[(i, j)];
+            }
         }
+        Equations { normal, right }
     }
-    (normal, right, left)
+
+    fn cost(&self, impedance: &Impedance) -> f64 {
+        let residual = |line: &Line| line.amperes - impedance.admittance(line.omega).0 * line.volts;
+        self.0.iter().map(|line| residual(line).norm_sqr()).sum()
+    }
+
+    fn stepped(&self, impedance: &Impedance, step: &Column) -> Impedance {
+        impedance.stepped(step)
+    }
 }
 
 /// Residual of a narrow band that is coherent with the voltage.

@@ -169,4 +169,15 @@ mod tests {
         let same = by_added_mass(&bare, &bare, added).unwrap_err();
         assert!(matches!(same, Refusal::AddedMassSmall { .. }), "{same}");
     }
+
+    #[test]
+    fn of_two_masses_that_agree_the_more_certain_one_is_reported() {
+        let split = |mass_kg, share| Split {
+            mass_kg: Estimate::known(mass_kg, share),
+            force_constant: Estimate::known(60.0 * mass_kg, share),
+        };
+        let (certain, rough) = (split(0.06, 0.005), split(0.0605, 0.02));
+        assert_eq!(agreed(certain, rough).unwrap(), certain);
+        assert_eq!(agreed(rough, certain).unwrap(), certain);
+    }
 }

@@ -28,6 +28,7 @@ use crate::brace::prior::Prior;
 use crate::brace::problem::Problem;
 use crate::brace::residuals::{LEAST_DEVIATION, effective_deviation, rms};
 use crate::brace::swing::Swing;
+use crate::descent::{Ending, descend};
 use nalgebra::{DMatrix, DVector};
 
 /// Lengths of the beginning of a swing that are fitted before the whole, s.
@@ -157,13 +158,13 @@ impl<'s> Problem<'s> {
             self.weight = 1.0 / deviation.powi(2);
             vector = self.descend(vector, MOST_STEPS, SMALLEST_GAIN)?;
         }
-        let equations = self.equations(&vector, true);
-        let inverse = equations.normal.clone().cholesky()?.inverse();
+        let (equations, blocks) = self.equations_by_half_swing(&vector, true);
+        let inverse = equations.normal.cholesky()?.inverse();
         let mut covariance = &inverse * self.information(&vector) * &inverse;
         // What each half swing does to each number: errors of a model have the same sign from
         // one to the next, so they add up.
         let mut pulls = DVector::zeros(inverse.nrows());
-        for block in &equations.blocks {
+        for block in &blocks {
             pulls += (&inverse * block).abs();
             covariance += &inverse * block * block.transpose() * &inverse;
         }
@@ -227,37 +228,12 @@ impl<'s> Problem<'s> {
         std::iter::once(guess.clone()).chain(moved).collect()
     }
 
-    fn descend(
-        &self,
-        mut vector: DVector<f64>,
-        steps: u32,
-        least_gain: f64,
-    ) -> Option<DVector<f64>> {
-        let mut equations = self.equations(&vector, false);
-        let mut caution = 1e-3;
-        for _ in 0..steps {
-            let mut cautious = equations.normal.clone();
-            for i in 0..vector.len() {
-                cautious[(i, i)] += caution * equations.normal[(i, i)];
-            }
-            let mut next = &vector + cautious.cholesky()?.solve(&equations.right);
-            Self::bounded(&mut next);
-            let left = self.cost(&next);
-            if left < equations.left {
-                let gain = (equations.left - left) / equations.left;
-                vector = next;
-                if gain < least_gain {
-                    break;
-                }
-                equations = self.equations(&vector, false);
-                caution = (caution / 10.0).max(1e-9);
-            } else {
-                caution *= 10.0;
-                if caution > 1e8 {
-                    break;
-                }
-            }
-        }
-        Some(vector)
+    fn descend(&self, vector: DVector<f64>, steps: u32, gain: f64) -> Option<DVector<f64>> {
+        let ending = Ending {
+            steps,
+            gain,
+            caution: (1e-9, 1e8),
+        };
+        descend(self, vector, ending)
     }
 }

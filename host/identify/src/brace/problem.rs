@@ -5,7 +5,8 @@ use crate::brace::numbers::{LEAST, MOST, NUMBERS, place};
 use crate::brace::prior::Prior;
 use crate::brace::start;
 use crate::brace::swing::Swing;
-use nalgebra::{DMatrix, DVector};
+use crate::descent::{Equations, LeastSquares};
+use nalgebra::{DMatrix, DVector, Dyn};
 
 /// Steps from one compared angle to the next: 2 ms.
 pub(crate) const STRIDE: usize = 4;
@@ -36,14 +37,6 @@ pub(crate) struct Problem<'s> {
     pub(crate) weight: f64,
     /// One-sided differences instead of central ones.
     pub(crate) is_rough: bool,
-}
-
-pub(crate) struct Equations {
-    pub(crate) normal: DMatrix<f64>,
-    pub(crate) right: DVector<f64>,
-    pub(crate) left: f64,
-    /// Gradients of the half swings.
-    pub(crate) blocks: Vec<DVector<f64>>,
 }
 
 impl Problem<'_> {
@@ -130,12 +123,6 @@ impl Problem<'_> {
         }
     }
 
-    pub(crate) fn bounded(vector: &mut DVector<f64>) {
-        for at in 0..NUMBERS {
-            vector[at] = vector[at].clamp(LEAST[at], MOST[at]);
-        }
-    }
-
     pub(crate) fn simulate(&self, vector: &DVector<f64>, swing_at: usize) -> Vec<f64> {
         let it = &self.swings[swing_at];
         let mut numbers: [f64; NUMBERS] = std::array::from_fn(|i| vector[i]);
@@ -172,21 +159,12 @@ impl Problem<'_> {
             .collect()
     }
 
-    /// Returns the cost.
-    pub(crate) fn cost(&self, vector: &DVector<f64>) -> f64 {
-        let squares: f64 = (0..self.swings.len())
-            .flat_map(|swing| self.residual(vector, swing))
-            .filter(|r| !r.is_nan())
-            .map(|r| r * r)
-            .sum();
-        let known: f64 = (0..vector.len())
-            .filter_map(|at| self.known(at).map(|known| (at, known)))
-            .map(|(at, (mean, deviation))| ((self.number(vector, at) - mean) / deviation).powi(2))
-            .sum();
-        self.weight * squares + known
-    }
-
-    pub(crate) fn equations(&self, vector: &DVector<f64>, with_blocks: bool) -> Equations {
+    /// Returns the normal equations, and the gradients of the half swings if they are wanted.
+    pub(crate) fn equations_by_half_swing(
+        &self,
+        vector: &DVector<f64>,
+        with_blocks: bool,
+    ) -> (Equations<Dyn>, Vec<DVector<f64>>) {
         let n = self.length();
         let mut normal = self.information(vector);
         let mut right = DVector::zeros(n);
@@ -255,12 +233,7 @@ impl Problem<'_> {
                 from = end.max(from);
             }
         }
-        Equations {
-            normal,
-            right,
-            left: self.cost(vector),
-            blocks,
-        }
+        (Equations { normal, right }, blocks)
     }
 
     /// Returns the derivative of a swing's angles with respect to one entry, by differences from
@@ -292,5 +265,34 @@ impl Problem<'_> {
             .zip(down)
             .map(|(up, down)| (up - down) / way)
             .collect()
+    }
+}
+
+impl LeastSquares<Dyn> for Problem<'_> {
+    type Point = DVector<f64>;
+
+    fn equations(&self, vector: &DVector<f64>) -> Equations<Dyn> {
+        self.equations_by_half_swing(vector, false).0
+    }
+
+    fn cost(&self, vector: &DVector<f64>) -> f64 {
+        let squares: f64 = (0..self.swings.len())
+            .flat_map(|swing| self.residual(vector, swing))
+            .filter(|r| !r.is_nan())
+            .map(|r| r * r)
+            .sum();
+        let known: f64 = (0..vector.len())
+            .filter_map(|at| self.known(at).map(|known| (at, known)))
+            .map(|(at, (mean, deviation))| ((self.number(vector, at) - mean) / deviation).powi(2))
+            .sum();
+        self.weight * squares + known
+    }
+
+    fn stepped(&self, vector: &DVector<f64>, step: &DVector<f64>) -> DVector<f64> {
+        let mut next = vector + step;
+        for at in 0..NUMBERS {
+            next[at] = next[at].clamp(LEAST[at], MOST[at]);
+        }
+        next
     }
 }

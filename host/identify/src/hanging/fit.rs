@@ -3,8 +3,9 @@
 
 use super::way::Mean;
 use crate::Estimate;
+use crate::descent::{Ending, Equations, LeastSquares, descend};
 use crate::estimate::DEVIATIONS;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Const, SMatrix, SVector};
 
 /// Parameters of the fit: K/M (1/A), μ, F/M, φ₀ (rad), c·M (rad).
 type Numbers = SVector<f64, 5>;
@@ -222,46 +223,53 @@ fn slopes(numbers: &Numbers, mean: &Mean) -> Numbers {
 /// Approximate noise of a mean, A, which weighs the assumptions against the data.
 const NOISE_A: f64 = 0.005;
 
-/// Minimises the residuals by the Levenberg–Marquardt method.
-fn fitted(means: &[Mean], from: Numbers, prior: &Numbers, weights: &Numbers) -> Numbers {
-    let cost = |n: &Numbers| {
-        let misfit: f64 = means
-            .iter()
-            .map(|m| (m.current_a - current_a(n, m)).powi(2))
-            .sum();
-        misfit / NOISE_A.powi(2) + (n - prior).component_mul(&(n - prior)).dot(weights)
-    };
-    let mut numbers = from;
-    let mut best = cost(&numbers);
-    let mut damping = 1e-3;
-    for _ in 0..100 {
-        let mut normal = Square::from_diagonal(weights);
-        let mut pull = (prior - numbers).component_mul(weights);
-        for mean in means {
-            let slope = slopes(&numbers, mean) / NOISE_A;
+/// The squares of what the means leave of the current, and of the deviations from what is assumed.
+struct Problem<'m> {
+    means: &'m [Mean],
+    prior: &'m Numbers,
+    weights: &'m Numbers,
+}
+
+impl LeastSquares<Const<5>> for Problem<'_> {
+    type Point = Numbers;
+
+    fn equations(&self, numbers: &Numbers) -> Equations<Const<5>> {
+        let mut normal = Square::from_diagonal(self.weights);
+        let mut right = (self.prior - numbers).component_mul(self.weights);
+        for mean in self.means {
+            let slope = slopes(numbers, mean) / NOISE_A;
             normal += slope * slope.transpose();
-            pull += slope * ((mean.current_a - current_a(&numbers, mean)) / NOISE_A);
+            right += slope * ((mean.current_a - current_a(numbers, mean)) / NOISE_A);
         }
-        let damped = normal + Square::from_diagonal(&(normal.diagonal() * damping));
-        let Some(step) = damped.lu().solve(&pull) else {
-            break;
-        };
-        let tried = numbers + step;
-        let value = cost(&tried);
-        if value < best {
-            let is_done = best - value < 1e-9 * best;
-            (numbers, best, damping) = (tried, value, damping * 0.3);
-            if is_done {
-                break;
-            }
-        } else {
-            damping *= 10.0;
-            if damping > 1e9 {
-                break;
-            }
-        }
+        Equations { normal, right }
     }
-    numbers
+
+    fn cost(&self, numbers: &Numbers) -> f64 {
+        let off = numbers - self.prior;
+        let misfit = |mean: &Mean| (mean.current_a - current_a(numbers, mean)).powi(2);
+        let misfit: f64 = self.means.iter().map(misfit).sum();
+        misfit / NOISE_A.powi(2) + off.component_mul(&off).dot(self.weights)
+    }
+
+    fn stepped(&self, numbers: &Numbers, step: &Numbers) -> Numbers {
+        numbers + step
+    }
+}
+
+/// Returns the numbers that fit the means best, from a guess; the guess where the currents say
+/// nothing about them.
+fn fitted(means: &[Mean], from: Numbers, prior: &Numbers, weights: &Numbers) -> Numbers {
+    let problem = Problem {
+        means,
+        prior,
+        weights,
+    };
+    let ending = Ending {
+        steps: 100,
+        gain: 1e-9,
+        caution: (1e-12, 1e9),
+    };
+    descend(&problem, from, ending).unwrap_or(from)
 }
 
 /// Returns the covariance of the parameters, scaled by the residual, and the information of the data

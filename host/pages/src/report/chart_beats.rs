@@ -8,6 +8,7 @@ use crate::report::symptom_chart::{WIDE, WIDTH};
 use crate::report::symptoms::Symptom;
 use crate::report::symptoms::occurrences::Beat;
 use crepitus_model::render::effects::clonus::ClonusSettings;
+use crepitus_scene::static_limits;
 
 const HEIGHT: f64 = 190.0;
 const FOOT: f64 = 45.0;
@@ -78,7 +79,9 @@ fn intervals(beats: &[Beat]) -> Vec<Point> {
 
 /// Intervals that the settings give for these beats: (s, ms).
 fn rhythm(beats: &[Beat], settings: &ClonusSettings) -> Vec<Point> {
-    between(beats, |from, _| settings.interval_s(from.number))
+    between(beats, |from, _| {
+        static_limits::clonus::interval_s(settings, from.number)
+    })
 }
 
 fn between(beats: &[Beat], length_s: impl Fn(&Beat, &Beat) -> f64) -> Vec<Point> {

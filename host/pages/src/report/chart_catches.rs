@@ -7,6 +7,7 @@ use crate::plot::{
 use crate::report::symptom_chart::{WIDE, WIDTH};
 use crate::report::symptoms::Symptom;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
+use crepitus_scene::static_limits::spasticity;
 
 const HEIGHT: f64 = 320.0;
 
@@ -80,10 +81,11 @@ struct Law {
 
 impl Law {
     fn of(settings: &SpasticitySettings, to_deg_s: f64) -> Self {
-        let slowest_deg_s = settings.slowest_rad_s().to_degrees();
+        let slowest_deg_s = spasticity::slowest_rad_s(settings).to_degrees();
         let ends = [slowest_deg_s, to_deg_s.max(slowest_deg_s)];
         let line = ends.map(|deg_s| {
-            let threshold_rad = settings.threshold_rad(settings.sense() * deg_s.to_radians());
+            let omega_rad_s = spasticity::sense(settings) * deg_s.to_radians();
+            let threshold_rad = spasticity::threshold_rad(settings, omega_rad_s);
             Point::new(deg_s, threshold_rad.to_degrees())
         });
         let slower = Mark {

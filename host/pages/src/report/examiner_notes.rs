@@ -9,6 +9,7 @@ use crate::report::symptoms::{Symptom, Symptoms};
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::clonus::ClonusSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
+use crepitus_scene::static_limits::spasticity;
 use crepitus_scene::trace::Word;
 
 /// Catches, collapses and stretches that are noted one by one.
@@ -146,7 +147,7 @@ fn catches(found: &Occurrences, settings: &EffectSettings, rows: &mut Vec<Row>) 
         };
         let catches = settings.spasticity.filter(SpasticitySettings::catches);
         let height = catches.map_or(String::new(), |settings| {
-            let nm = settings.catch_nm(event.omega_rad_s);
+            let nm = spasticity::catch_nm(&settings, event.omega_rad_s);
             format!(" with {}", torque(nm))
         });
         let value = format!(

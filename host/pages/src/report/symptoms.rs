@@ -18,6 +18,7 @@ pub(crate) mod tests;
 
 use crate::report::channels::{Sample, Setup};
 use crepitus_model::render::effects::{EffectSettings, FELT_SHARE};
+use crepitus_scene::static_limits;
 use crepitus_scene::trace::{Column, SymptomEvent, Word};
 use occurrences::Occurrences;
 use path::Path;
@@ -63,7 +64,8 @@ pub(crate) struct Symptoms {
 
 impl Symptom {
     fn new(words: Words, places: Places, effects: &EffectSettings) -> Self {
-        let beat_nm = effects.clonus.map_or(0.0, |clonus| clonus.beat_nm().abs());
+        let clonus = effects.clonus.as_ref();
+        let beat_nm = clonus.map_or(0.0, |s| static_limits::clonus::beat_nm(s).abs());
         Self {
             words,
             places,

@@ -51,6 +51,17 @@ fn csv_has_all_digits_and_quotes() {
          alone,nan,3,cuff limb,false\n\
          none,-inf,,cuff limb,true\n"
     );
+    // Each of them is a reason for quotes.
+    let words = ["\"euler\" diverged", "1, 2", "two\nlines", "one\rtwo"];
+    let quoted = Table::of(&words).column("words", |words| *words);
+    assert_eq!(
+        quoted.to_csv(),
+        "words\n\
+         \"\"\"euler\"\" diverged\"\n\
+         \"1, 2\"\n\
+         \"two\nlines\"\n\
+         \"one\rtwo\"\n"
+    );
 }
 
 #[test]

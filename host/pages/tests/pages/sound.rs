@@ -154,20 +154,37 @@ fn the_file_says_what_it_is_and_its_chunks_are_whole() {
         (&bytes[..4], number(4) + 8),
         (b"RIFF".as_slice(), bytes.len())
     );
-    let (mut at, mut chunks) = (12, Vec::new());
-    while at < bytes.len() {
-        chunks.push((bytes[at..at + 4].to_vec(), at, number(at + 4)));
-        at += 8 + number(at + 4).next_multiple_of(2);
-    }
-    assert_eq!(at, bytes.len());
-    let of = |name: &[u8]| chunks.iter().find(|chunk| chunk.0 == name).unwrap();
-    assert_eq!(of(b"data").2, 2 * samples.len());
-    let (_, at, long) = of(b"LIST");
-    let info = String::from_utf8_lossy(&bytes[*at..at + 8 + long]).into_owned();
-    assert!(
-        info.contains(&summary.level()) && info.contains("A test"),
-        "{info}"
-    );
+    // Name and content of each chunk of a part of the file.
+    let chunks = |mut at: usize, end: usize| {
+        let mut chunks = Vec::new();
+        while at < end {
+            let content = at + 8..at + 8 + number(at + 4);
+            chunks.push((bytes[at..at + 4].to_vec(), content.clone()));
+            at = content.start + content.len().next_multiple_of(2);
+        }
+        assert_eq!(at, end);
+        chunks
+    };
+    let whole = chunks(12, bytes.len());
+    let of = |name: &[u8]| &whole.iter().find(|chunk| chunk.0 == name).unwrap().1;
+    assert_eq!(of(b"data").len(), 2 * samples.len());
+    let list = of(b"LIST");
+    assert_eq!(&bytes[list.start..list.start + 4], b"INFO");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let texts: Vec<_> = chunks(list.start + 4, list.end)
+        .into_iter()
+        .map(|(name, content)| [text(&name), text(&bytes[content])])
+        .collect();
+    // Each with the zero at its end. A dot between units has two bytes.
+    let comment = format!("torque above 30 Hz, {}\0", summary.level());
+    assert!(comment.contains("N·m"), "{comment}");
+    let software = concat!("crepitus ", env!("CARGO_PKG_VERSION"), "\0");
+    let expected = [
+        ["INAM", "A test\0"],
+        ["ICMT", comment.as_str()],
+        ["ISFT", software],
+    ];
+    assert_eq!(texts, expected);
 }
 
 #[test]

@@ -141,7 +141,14 @@ impl<T: Transport> DeviceThread<'_, T> {
         (held.began_s, held.left_s) = (now_s, None);
         (held.samples, held.under_torque) = (0, 0);
         self.publish_parameters();
-        if let Err(error) = self.apply_unseen(&preset) {
+        let mut begun = self.record_trial(trial);
+        if begun.is_ok() {
+            begun = self.apply_unseen(&preset);
+            if begun.is_err() {
+                self.end_recording();
+            }
+        }
+        if let Err(error) = begun {
             if let Some(held) = &mut self.lesson {
                 (held.session.lesson, held.left_s) = before;
             }
@@ -153,7 +160,6 @@ impl<T: Transport> DeviceThread<'_, T> {
             self.pace = Some(pace);
             self.publish_target();
         }
-        self.record_trial(trial)?;
         self.note_trial(trial);
         self.publish_parameters();
         self.changed();

@@ -131,7 +131,7 @@ impl<T: Transport> DeviceThread<'_, T> {
     }
 
     /// Resumes the recording after a lost connection.
-    pub(super) fn resume_recording(&mut self, begin: crepitus_client::Begin) {
+    pub(super) fn resume_recording(&mut self, begin: Begin) {
         let Some(recorded) = &mut self.recording else {
             return;
         };
@@ -139,11 +139,6 @@ impl<T: Transport> DeviceThread<'_, T> {
         if !recorded.has_begun {
             return;
         }
-        let begin = Begin {
-            first_tick: begin.first_tick,
-            dropped: begin.dropped,
-            start: begin.start,
-        };
         if let Err(error) = recorded.recorder.subscribed(begin) {
             self.message = Some(error.to_string());
             self.recording = None;

@@ -1,6 +1,8 @@
+use super::recording::extension;
 use super::{DeviceThread, Program};
 use crate::control::{Holder, Page};
-use crate::request::Request as FromPage;
+use crate::frame::Masks;
+use crate::request::{LessonBegin, Request as FromPage};
 use crate::shared::{Outcome, Shared};
 use crate::tokens::{Role, Tokens};
 use crepitus_client::connection::Simulated;
@@ -9,12 +11,12 @@ use crepitus_protocol::host::{Operation, Request};
 use crepitus_protocol::{Decoder, Lane, Session, State};
 use crepitus_scene::preset::Preset;
 use crepitus_scene::{Overrides, shipped};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, mpsc};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::sync::oneshot::Receiver;
 
 /// Delay of the answer to a disarm that is slow: less than the timeout of a request.
@@ -82,9 +84,10 @@ impl Transport for Flood {
     }
 }
 
-/// A program without presets, that nobody ends; it may end with a panic.
+/// A program without presets, that nobody ends; it may end by itself at once, or with a panic.
 #[derive(Default)]
 struct Alone {
+    ends: bool,
     panics: bool,
 }
 
@@ -107,7 +110,7 @@ impl Program<Flood> for Alone {
 
     fn has_ended(&self) -> bool {
         assert!(!self.panics, "as a mistake would");
-        false
+        self.ends
     }
 }
 
@@ -134,13 +137,40 @@ fn device_thread(program: &Alone) -> DeviceThread<'_, Flood> {
 /// Torque ends with what the device thread sends, not with the lease.
 #[test]
 fn a_panic_disarms_first() {
-    let program = Alone { panics: true };
+    let program = Alone {
+        panics: true,
+        ..Alone::default()
+    };
     let mut device_thread = device_thread(&program);
     device_thread.client.zero().expect("a zero");
     device_thread.client.arm().expect("armed");
     let disarms = device_thread.client.transport_mut().disarms.clone();
     assert!(catch_unwind(AssertUnwindSafe(|| device_thread.run())).is_err());
     assert_eq!(disarms.load(Ordering::Relaxed), 1);
+}
+
+/// Making a long file takes longer than the lease lasts.
+#[test]
+fn torque_ends_before_files_are_waited_for() {
+    let program = Alone {
+        ends: true,
+        ..Alone::default()
+    };
+    let mut device_thread = device_thread(&program);
+    device_thread.client.zero().expect("a zero");
+    device_thread.client.arm().expect("armed");
+    let disarms = device_thread.client.transport_mut().disarms.clone();
+    let (sender, seen) = mpsc::channel();
+    device_thread.sealing.push(std::thread::spawn(move || {
+        let end = Instant::now() + Duration::from_secs(2);
+        while disarms.load(Ordering::Relaxed) == 0 && Instant::now() < end {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let count = disarms.load(Ordering::Relaxed);
+        sender.send(count).map_err(|error| error.to_string())
+    }));
+    device_thread.run().expect("it ends in order");
+    assert_eq!(seen.try_recv(), Ok(1));
 }
 
 #[test]
@@ -172,6 +202,77 @@ fn a_knee_that_asks_for_more_than_the_device_shows_is_told() {
         message.contains("the symptoms can ask for 5.1 N·m together"),
         "{message}"
     );
+}
+
+/// Returns whether pages see neither the parameters nor the curves; otherwise they see both.
+fn hides(device_thread: &DeviceThread<'_, Flood>) -> bool {
+    let latest = device_thread.shared.latest.borrow();
+    let is_hidden = latest.parameters.contains("hidden");
+    let Masks { torque, states } = device_thread.masks();
+    assert_eq!([torque, states], [is_hidden; 2]);
+    is_hidden
+}
+
+/// Its torque still ramps down, and would tell which knee it was.
+#[test]
+fn a_knee_that_was_left_is_hidden_until_its_torque_has_ended() {
+    let program = Alone::default();
+    let mut device_thread = device_thread(&program);
+    let knees = json!([{ "preset": "coarse" }, { "preset": "mas-2-catch" }]);
+    let plan = json!({ "title": "Two", "blind": true, "feedback": "end", "knees": knees });
+    let lesson = LessonBegin {
+        lesson: None,
+        plan: Some(plan),
+        students: vec!["A".to_owned()],
+        seed: Some(7),
+        repeats: None,
+    };
+    device_thread.begin_lesson(&lesson).expect("a lesson");
+    device_thread.start_trial().expect("a trial");
+    device_thread.step();
+    assert!(hides(&device_thread));
+    device_thread.next_trial().expect("the next one");
+    let left_s = device_thread.now_s;
+    while device_thread.now_s < left_s + 0.5 {
+        device_thread.step();
+        let later_s = device_thread.now_s - left_s;
+        assert!(hides(&device_thread), "{later_s} s later");
+    }
+    while device_thread.now_s < left_s + 2.0 {
+        device_thread.step();
+    }
+    assert!(!hides(&device_thread));
+}
+
+/// A full disk, for example: the teacher starts it again once there is room.
+#[test]
+fn a_trial_that_cannot_be_recorded_has_not_begun() {
+    let program = Alone::default();
+    let mut device_thread = device_thread(&program);
+    let sessions = tempfile::tempdir().unwrap();
+    device_thread.sessions = Some(sessions.path().to_owned());
+    let knees = json!([{ "preset": "coarse" }]);
+    let lesson = LessonBegin {
+        lesson: None,
+        plan: Some(json!({ "title": "One", "knees": knees })),
+        students: vec!["A".to_owned()],
+        seed: Some(7),
+        repeats: None,
+    };
+    device_thread.begin_lesson(&lesson).expect("a lesson");
+    let folder = std::fs::read_dir(sessions.path()).unwrap().next().unwrap();
+    let in_the_way = folder
+        .unwrap()
+        .path()
+        .join("trial-01")
+        .with_extension(extension());
+    std::fs::create_dir(&in_the_way).unwrap();
+    let knee = device_thread.preset.clone();
+    assert!(device_thread.start_trial().is_err());
+    assert_eq!(device_thread.preset, knee);
+    std::fs::remove_dir(&in_the_way).unwrap();
+    device_thread.start_trial().expect("a trial");
+    assert!(device_thread.recording.is_some());
 }
 
 /// Queues a request as the connection of a page does.

@@ -1,12 +1,13 @@
 //! Frames of the file.
 
-use crate::accounting::{Begin, Totals};
+use crate::accounting::Totals;
 
 use crate::ending::Ending;
 use crate::metadata::Metadata;
 use crate::parameters::Named;
 use crate::row::END_TICK as MOST;
 use crepitus_protocol::Lane;
+use crepitus_protocol::accounting::Begin;
 use crepitus_protocol::frame::{CRC, CRC_BYTES, DELIMITER, Frame, TooLong, encode};
 use crepitus_protocol::telemetry::Block;
 use serde::{Deserialize, Serialize};

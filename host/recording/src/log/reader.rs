@@ -2,7 +2,7 @@
 
 use super::frame::{Checkpoint, Content, Entry, Owner};
 use super::{FRAME_LIMIT, MAGIC, repair};
-use crate::accounting::{Begin, Ledger, Totals};
+use crate::accounting::{Ledger, Totals};
 use crate::damage::Damage;
 use crate::ending::Ending;
 use crate::findings::Findings;
@@ -10,6 +10,7 @@ use crate::metadata::Metadata;
 use crate::parameters::{History, Named, ParameterSet, values_of};
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Source;
+use crepitus_protocol::accounting::Begin;
 use crepitus_protocol::frame::DELIMITER;
 use crepitus_protocol::telemetry::Block;
 use sha2::{Digest, Sha256};

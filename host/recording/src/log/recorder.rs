@@ -3,11 +3,12 @@
 use super::disk::{Background, Disk};
 use super::frame::{Checkpoint, Entry, of_block};
 use super::{CHECKPOINT_BLOCKS, MAGIC};
-use crate::accounting::{Begin, Ledger, Totals};
+use crate::accounting::{Ledger, Totals};
 use crate::ending::{EndCause, Ending};
 use crate::metadata::Metadata;
 use crate::parameters::named_values;
 use crepitus_files::output::{folder_of, sync_folder_of, temporary_in};
+use crepitus_protocol::accounting::Begin;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, Values};
 use sha2::{Digest, Sha256};

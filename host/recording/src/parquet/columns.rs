@@ -10,7 +10,7 @@ use parquet::data_type::{
     ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type,
 };
 use parquet::errors::Result;
-use parquet::file::metadata::RowGroupMetaData;
+use parquet::file::metadata::{ColumnChunkMetaData, RowGroupMetaData};
 use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterVersion};
 use parquet::file::reader::ChunkReader;
 use parquet::file::serialized_reader::SerializedPageReader;
@@ -162,11 +162,18 @@ pub(super) fn read<R: ChunkReader + 'static>(
     let mut rows = vec![Row::default(); count];
     let mut texts: [Vec<ByteArray>; 4] = [const { Vec::new() }; 4];
     let mut words = texts.iter_mut();
-    for (at, described) in COLUMNS.iter().enumerate() {
+    for described in &COLUMNS {
+        let mut chunks = group.columns().iter();
+        let Some(chunk) = chunks.find(|chunk| chunk.column_descr().name() == described.name) else {
+            // Written before there was this column; flags are made of all words.
+            if let Cell::Word(_) = described.cell {
+                return Err(implausible(format!("it has no column {}", described.name)));
+            }
+            continue;
+        };
         let column = Chunk {
             bytes,
-            group,
-            at,
+            about: chunk,
             count,
         };
         let rows = &mut rows;
@@ -235,18 +242,24 @@ fn short() -> io::Error {
 
 struct Chunk<'g, R> {
     bytes: &'g Arc<R>,
-    group: &'g RowGroupMetaData,
-    at: usize,
+    about: &'g ColumnChunkMetaData,
     count: usize,
 }
 
 impl<R: ChunkReader + 'static> Chunk<'_, R> {
     /// Values of the column, and for each row whether it has one.
     fn values<T: DataType>(&self) -> io::Result<(Vec<T::T>, Vec<i16>)> {
-        let chunk = self.group.columns().get(self.at).ok_or_else(short)?;
-        let pages = SerializedPageReader::new(self.bytes.clone(), chunk, self.count, None)
-            .map_err(other)?;
-        let reader = get_column_reader(chunk.column_descr_ptr(), Box::new(pages));
+        let Self {
+            bytes,
+            about,
+            count,
+        } = *self;
+        if about.column_type() != T::get_physical_type() {
+            let name = about.column_descr().name();
+            return Err(implausible(format!("column {name} has another type")));
+        }
+        let pages = SerializedPageReader::new(bytes.clone(), about, count, None).map_err(other)?;
+        let reader = get_column_reader(about.column_descr_ptr(), Box::new(pages));
         let mut reader = get_typed_column_reader::<T>(reader);
         let (mut values, mut levels) = (Vec::with_capacity(self.count), Vec::new());
         let (rows, _, _) = reader

@@ -164,3 +164,30 @@ fn checked(at: u64, seal: &[u8]) -> Option<Seal> {
     let crc = u32::from_le_bytes(*head.last_chunk()?);
     (CRC.checksum(body) == crc).then(|| Seal::of(at, body))?
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::columns;
+    use super::*;
+    use parquet::file::metadata::KeyValue;
+    use parquet::schema::types::SchemaDescriptor;
+    use std::io::Write;
+    use std::sync::Arc;
+
+    /// Also if it is read in two parts: behind each byte of mark and head.
+    #[test]
+    fn a_seal_is_found_wherever_it_stands() {
+        let schema = SchemaDescriptor::new(Arc::new(columns::schema().unwrap()));
+        let id = KeyValue::new(ID_KEY.to_owned(), "an id".to_owned());
+        let footer = FileMetaData::new(2, 0, None, Some(vec![id]), Arc::new(schema), None);
+        let bytes = seal((0, &[]), 0, footer, Vec::new()).unwrap();
+        for at in BLOCK - MARK.len() - HEAD..=BLOCK {
+            let mut file = tempfile::tempfile().unwrap();
+            file.seek(SeekFrom::Start(at as u64)).unwrap();
+            file.write_all(&bytes).unwrap();
+            let seals = find(&file).unwrap();
+            let found: Vec<_> = seals.iter().map(|s| (s.at, s.id.as_deref())).collect();
+            assert_eq!(found, [(at as u64, Some("an id"))], "at {at}");
+        }
+    }
+}

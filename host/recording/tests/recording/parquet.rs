@@ -1,7 +1,7 @@
 //! The Parquet file of a recording.
 
 use crate::support::{
-    check_books, is_part, mangled, open, recorded, rows, rows_of, salvaged, sent,
+    check_books, is_part, mangled, open, plain, recorded, rows, rows_of, salvaged, sent, sent_of,
 };
 use crepitus_pages::recorded::Analysis;
 use crepitus_recording::{Cause, Damage, Format, Recording, Row, parquet_writer};
@@ -419,4 +419,18 @@ fn writing_stops_when_it_is_told_to() {
     let file = File::create(bench.folder.path().join("stopped")).unwrap();
     let error = parquet_writer().unwrap()(&recording, &file, &mut |_| false).unwrap_err();
     assert_eq!(error.kind(), std::io::ErrorKind::Interrupted);
+}
+
+/// Columns that a later version has besides are at their default in it.
+#[test]
+fn the_first_parquet_file_with_these_columns_is_still_read() {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
+    let path = tests.join("golden.parquet");
+    if std::env::var_os("CREPITUS_BLESS").is_some() {
+        let _ = fs::remove_file(&path);
+        converted(&tests.join("golden.crepitus"), &path);
+    }
+    let recording = open(&path).unwrap();
+    assert_eq!(rows(&recording), rows_of(&sent_of(10, plain)));
+    check_books(&recording);
 }

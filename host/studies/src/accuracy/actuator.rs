@@ -10,14 +10,15 @@
 //! all of the error in f64.
 
 use crate::watcher::{StudyError, Watcher};
-use crepitus_model::joint::shaft::Linear;
+use crepitus_ladder::loops::Loops;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::render::effects::vibration_actuator::{
     VibrationActuator, VibrationActuatorSettings,
 };
 use crepitus_model::render::effects::{DeviceEffect, Timing};
 use crepitus_model::render::position::Sensing;
-use crepitus_model::solver::locate::{ExactEvents, Locate};
+use crepitus_model::solver::Solver;
+use crepitus_model::solver::locate::ExactEvents;
 use crepitus_model::{
     Frozen, Real, Settings, SettingsError, ShaftStep, StepCoefficients, StickSlip,
 };
@@ -27,7 +28,6 @@ use crepitus_plant::spectrum::cross::Cross;
 use crepitus_scene::cpu_time;
 use crepitus_scene::scene::Precision;
 use serde::Serialize;
-use std::hint::black_box;
 
 /// Steps, as multiples of the finest.
 const STRIDES: [usize; 4] = [4, 16, 32, 64];
@@ -81,7 +81,7 @@ pub fn actuator_table(points: &[ActuatorPoint]) -> Table<'_, ActuatorPoint> {
 /// # Errors
 /// Error of the watcher.
 pub fn points(repeats: usize, watcher: &mut dyn Watcher) -> Result<Vec<ActuatorPoint>, StudyError> {
-    let torque = torque_nm()?;
+    let torque = torque_nm(FINEST_S, STEPS)?;
     let exact = voltages::<f64>(&torque, 1)?;
     let ratios = [ratio::<f64>(repeats)?, ratio::<f32>(repeats)?];
     let mut points = Vec::new();
@@ -107,24 +107,17 @@ pub fn points(repeats: usize, watcher: &mut dyn Watcher) -> Result<Vec<ActuatorP
     Ok(points)
 }
 
-/// The joint's torque at the end of each finest step, N·m.
-fn torque_nm() -> Result<Vec<f64>, SettingsError> {
-    let mut joint = joint::<f64>(FINEST_S)?;
-    let step = steady(FINEST_S);
-    Ok((0..STEPS)
+/// The joint's torque at the end of each step of so many, N·m.
+fn torque_nm(step_s: f64, steps: usize) -> Result<Vec<f64>, SettingsError> {
+    let coefficients = StepCoefficients::new(&Settings::default().validate()?, step_s)?;
+    let mut joint: Frozen<f64, ExactEvents> = Frozen::new(coefficients, OMEGA_RAD_S);
+    let step = steady(step_s);
+    Ok((0..steps)
         .map(|_| {
             joint.step(&step, |_| {});
             joint.torque_nm()
         })
         .collect())
-}
-
-fn joint<F: Real>(step_s: f64) -> Result<Frozen<F, ExactEvents>, SettingsError>
-where
-    ExactEvents: Locate<F, Shape = Linear>,
-{
-    let coefficients = StepCoefficients::new(&Settings::default().validate()?, step_s)?;
-    Ok(Frozen::new(coefficients, F::from_f64(OMEGA_RAD_S)))
 }
 
 fn steady<F: Real>(step_s: f64) -> ShaftStep<F> {
@@ -174,29 +167,26 @@ fn off(exact: &[f64], found: &[f64], step_s: f64) -> f64 {
 }
 
 /// Time of a tick over that of a step of crepitus: the median of repeats, in turn.
-fn ratio<F: Real>(repeats: usize) -> Result<f64, SettingsError>
-where
-    ExactEvents: Locate<F, Shape = Linear>,
-{
-    let step_s = 5e-5;
-    let (mut joint, mut law) = (joint::<F>(step_s)?, law::<F>(step_s)?);
-    let step = steady::<F>(step_s);
-    let mut torques = vec![F::ZERO; TIMED];
-    let mut ratios: Vec<f64> = (0..repeats.max(3))
-        .map(|_| {
+fn ratio<F: Loops>(repeats: usize) -> Result<f64, SettingsError> {
+    let (step_s, omega) = (5e-5, F::from_f64(OMEGA_RAD_S));
+    let settings = Settings::default().validate()?;
+    let mut law = law::<F>(step_s)?;
+    let steps = vec![steady::<F>(step_s); TIMED];
+    let torques_nm: Vec<F> = torque_nm(step_s, TIMED)?
+        .into_iter()
+        .map(F::from_f64)
+        .collect();
+    let mut ratios: Vec<f64> = Vec::new();
+    F::joint(&settings, Solver::ExactEvents, step_s, omega, &mut |step| {
+        for _ in 0..repeats.max(3) {
             let begun = cpu_time::now();
-            for torque in &mut torques {
-                joint.step(black_box(&step), |_| {});
-                *torque = joint.torque_nm();
-            }
+            step(&steps);
             let of_joint = cpu_time::since(begun).as_secs_f64();
             let begun = cpu_time::now();
-            for torque in &torques {
-                black_box(law.tick(black_box(*torque), true));
-            }
-            cpu_time::since(begun).as_secs_f64() / of_joint
-        })
-        .collect();
+            F::actuator(&mut law, &torques_nm);
+            ratios.push(cpu_time::since(begun).as_secs_f64() / of_joint);
+        }
+    })?;
     ratios.sort_by(f64::total_cmp);
     Ok(ratios.get(ratios.len() / 2).copied().unwrap_or(f64::NAN))
 }
@@ -211,7 +201,7 @@ mod tests {
 
     #[test]
     fn rounding_is_far_below_what_the_step_costs() {
-        let torque = torque_nm().unwrap();
+        let torque = torque_nm(FINEST_S, STEPS).unwrap();
         let exact = voltages::<f64>(&torque, 1).unwrap();
         let mut last = 0.0;
         for stride in STRIDES {

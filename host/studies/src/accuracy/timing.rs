@@ -1,7 +1,7 @@
 //! Cost of a step on the host.
 //!
-//! Only the stepping is timed: the step, its event closure, and reading the
-//! torque, as in a tick of the device. The motion is sampled
+//! Only the stepping is timed, by the loops of [`crepitus_ladder::loops`]: the step, its event
+//! closure, and reading the torque, as in a tick of the device. The motion is sampled
 //! beforehand, and a few thousand steps at a time are brought into the cache
 //! before the clock starts. The clock is the CPU time of the thread, minus the
 //! cost of reading it: on a busy machine wall time would include others' work.
@@ -11,8 +11,9 @@
 
 use crate::accuracy::scenes::StudyScene;
 use crate::sampling::{CHUNK_STEPS, Sampling};
-use crepitus_model::solver::{JointVisitor, Solver, with_joint};
-use crepitus_model::{Real, SettingsError, ShaftStep, StickSlip};
+use crepitus_ladder::loops::{Loops, Stepper};
+use crepitus_model::solver::Solver;
+use crepitus_model::{Real, SettingsError, ShaftStep};
 use crepitus_scene::cpu_time;
 use crepitus_scene::scene::Precision;
 use std::hint::black_box;
@@ -22,7 +23,7 @@ use std::time::Duration;
 pub(super) const MOST_STEPS: u64 = 40_000;
 
 /// A short scene is run again until this many steps are timed.
-pub(super) const LEAST_STEPS: u64 = 8_000;
+const LEAST_STEPS: u64 = 8_000;
 
 /// A rung in a precision.
 pub type Contestant = (Solver, Precision);
@@ -106,53 +107,50 @@ impl<'a> Track<'a> {
         }
     }
 
-    fn run<F: Real>(&self, solver: Solver, steps: &[ShaftStep<F>]) -> Result<f64, SettingsError> {
+    fn run<F: Loops>(&self, solver: Solver, steps: &[ShaftStep<F>]) -> Result<f64, SettingsError> {
         let omega = steps.first().map_or(F::ZERO, |s| s.omega_start_rad_s);
-        let (mut total, mut timed) = (Duration::ZERO, 0_u64);
-        let length = u64::try_from(steps.len()).unwrap_or(u64::MAX);
-        while timed < LEAST_STEPS.max(length) && length > 0 {
-            total += with_joint::<F, _>(
-                &self.scene.settings,
-                solver,
-                self.step_s,
-                omega,
-                Timed {
-                    steps,
-                    reading: self.reading,
-                },
-            )?;
-            timed += length;
-        }
-        Ok(total.as_secs_f64() * 1e9 / f64::from_whole(timed))
+        let (settings, step_s) = (&self.scene.settings, self.step_s);
+        ns_per_step(steps, |total| {
+            F::joint(settings, solver, step_s, omega, &mut |stepper| {
+                *total += stepping(steps, self.reading, stepper);
+            })
+        })
     }
 }
 
-struct Timed<'a, F> {
-    steps: &'a [ShaftStep<F>],
+/// CPU time of a step, ns: `once` goes through all steps and adds what that took, until enough are
+/// timed.
+pub(super) fn ns_per_step<S>(
+    steps: &[S],
+    mut once: impl FnMut(&mut Duration) -> Result<(), SettingsError>,
+) -> Result<f64, SettingsError> {
+    let (mut total, mut timed) = (Duration::ZERO, 0_u64);
+    let length = u64::try_from(steps.len()).unwrap_or(u64::MAX);
+    while timed < LEAST_STEPS.max(length) && length > 0 {
+        once(&mut total)?;
+        timed += length;
+    }
+    Ok(total.as_secs_f64() * 1e9 / f64::from_whole(timed))
+}
+
+/// CPU time in which a loop goes through all steps, in chunks that are brought into the cache before the
+/// clock starts; reading it takes `reading`.
+pub(super) fn stepping<S: Copy>(
+    steps: &[S],
     reading: Duration,
-}
-
-impl<F: Real> JointVisitor<F> for Timed<'_, F> {
-    type Output = Duration;
-
-    fn visit<J: StickSlip<F>>(self, mut joint: J) -> Duration {
-        let mut total = Duration::ZERO;
-        let mut cached = Vec::with_capacity(CHUNK_STEPS);
-        for part in self.steps.chunks(CHUNK_STEPS) {
-            cached.clear();
-            cached.extend_from_slice(part);
-            let steps = black_box(cached.as_slice());
-            let begun = cpu_time::now();
-            for shaft in steps {
-                joint.step(shaft, |event| {
-                    black_box(event);
-                });
-                black_box(joint.torque_nm());
-            }
-            total += cpu_time::since(begun).saturating_sub(self.reading);
-        }
-        total
+    stepper: Stepper<'_, S>,
+) -> Duration {
+    let mut total = Duration::ZERO;
+    let mut cached = Vec::with_capacity(CHUNK_STEPS);
+    for part in steps.chunks(CHUNK_STEPS) {
+        cached.clear();
+        cached.extend_from_slice(part);
+        let steps = black_box(cached.as_slice());
+        let begun = cpu_time::now();
+        stepper(steps);
+        total += cpu_time::since(begun).saturating_sub(reading);
     }
+    total
 }
 
 /// Median and spread.

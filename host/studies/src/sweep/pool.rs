@@ -1,21 +1,12 @@
 //! Thread pool of a sweep; rows come as runs end, nearly in the order of their points.
 
+use crate::parallel::pool;
 use crate::sweep::plan::Plan;
 use crate::sweep::row::Row;
 use crepitus_scene::{Observer, run};
 use std::io;
 use std::ops::Range;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
-use std::time::Duration;
-
-/// Poll interval of the receiver while no run ends.
-const POLL_INTERVAL: Duration = Duration::from_millis(50);
-
-/// Capacity of the queue of finished rows, per thread.
-const WAITING: usize = 64;
 
 /// The most threads: more than any computer has cores.
 const MOST_THREADS: usize = 4096;
@@ -59,52 +50,20 @@ pub fn run_all<R: Receiver>(
     let count: u64 = ranges.iter().map(|range| range.end - range.start).sum();
     let most = usize::try_from(count).unwrap_or(MOST_THREADS);
     let threads = threads.min(most).clamp(1, MOST_THREADS);
-    let points = Mutex::new(ranges.into_iter().flatten());
     let stop = Stop::default();
-    thread::scope(|scope| {
-        let (sender, rows) = mpsc::sync_channel(WAITING * threads);
-        let mut running = 0;
-        for _ in 0..threads {
-            let (sender, points, run, stop) = (sender.clone(), &points, &run, &stop);
-            let started = thread::Builder::new().spawn_scoped(scope, move || {
-                // A poisoned lock: another thread panicked outside of a run.
-                while let Some(point) = points.lock().ok().and_then(|mut points| points.next()) {
-                    let row = run(point, stop);
-                    let is_last = row.is_err();
-                    if sender.send(row).is_err() || is_last {
-                        break;
-                    }
-                }
-            });
-            match started {
-                Ok(_) => running += 1,
-                Err(error) if running == 0 => return Err(Ended::NoThread(error).into()),
-                Err(_) => break,
-            }
+    let mut receive = |row: Option<Result<Row, Ended>>| -> Result<(), R::Error> {
+        match row {
+            Some(Ok(row)) => receiver.row(row)?,
+            Some(Err(Ended::Stopped)) | None => {}
+            Some(Err(ended)) => return Err(ended.into()),
         }
-        drop(sender);
-        let outcome = receive(&rows, receiver);
-        if outcome.is_err() {
-            stop.0.store(true, Ordering::Relaxed);
-        }
-        // Who waits to send ends, too.
-        drop(rows);
-        outcome.map(|()| running)
-    })
-}
-
-fn receive<R: Receiver>(
-    rows: &mpsc::Receiver<Result<Row, Ended>>,
-    receiver: &mut R,
-) -> Result<(), R::Error> {
-    loop {
-        match rows.recv_timeout(POLL_INTERVAL) {
-            Ok(Ok(row)) => receiver.row(row)?,
-            Ok(Err(Ended::Stopped)) | Err(RecvTimeoutError::Timeout) => {}
-            Ok(Err(ended)) => return Err(ended.into()),
-            Err(RecvTimeoutError::Disconnected) => return Ok(()),
-        }
-        receiver.poll()?;
+        receiver.poll()
+    };
+    let take = |row| receive(row).inspect_err(|_| stop.0.store(true, Ordering::Relaxed));
+    let points = ranges.into_iter().flatten();
+    match pool(points, threads, take, |point| run(point, &stop)) {
+        Ok(outcome) => outcome,
+        Err(error) => Err(Ended::NoThread(error).into()),
     }
 }
 
@@ -151,6 +110,9 @@ pub fn totals(plan: &Plan, point: u64, stop: &Stop) -> Result<Row, Ended> {
 mod tests {
     use super::*;
     use std::collections::BTreeSet;
+    use std::sync::Mutex;
+    use std::thread;
+    use std::time::Duration;
 
     /// Wants nothing.
     struct Nobody;

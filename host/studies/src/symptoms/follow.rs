@@ -3,12 +3,9 @@
 use super::event::SymptomEvent;
 use super::given::Given;
 use crate::sampling::{CHUNK_STEPS, Sampling};
-use crepitus_model::render::ShaftEstimate;
-use crepitus_model::render::Shown;
-use crepitus_model::render::effects::symptom::Change;
-use crepitus_model::render::effects::{DeviceEffect, EffectSpec, LawVisitor, Tick, Timing};
-use crepitus_model::render::input_check::Checked;
-use crepitus_model::render::position::{Position, Scale, Sensing, Travel};
+use crepitus_ladder::loops::tick;
+use crepitus_model::render::effects::{DeviceEffect, LawVisitor, Timing};
+use crepitus_model::render::position::{Scale, Sensing};
 use crepitus_model::{Real, SettingsError, ShaftStep};
 
 /// Timing and sensing of a law that knows the joint's true motion.
@@ -18,30 +15,6 @@ pub fn timing(step_s: f64) -> Timing {
         delay_ticks: 1,
         sensing: Sensing::IDEAL,
     }
-}
-
-/// One tick of a law that is paid in full: its torque, N·m.
-#[inline]
-pub fn tick<F: Real, E: DeviceEffect<F>>(
-    law: &mut E,
-    shaft: &ShaftStep<F>,
-    place: Position<F>,
-    scale: &Scale<F>,
-    mut on_change: impl FnMut(Change<F>),
-) -> F {
-    let input = Checked::Step(*shaft);
-    let travel = Travel::plausible(&input, &place, scale);
-    let tick = Tick::of(
-        &ShaftEstimate::taken(shaft, place),
-        &input,
-        travel.as_ref(),
-        F::ONE,
-    );
-    law.added(
-        &tick,
-        &mut Shown::nothing(),
-        &mut |_: &'static EffectSpec, change: Change<F>| on_change(change),
-    )
 }
 
 /// Follows a motion: calls `on_tick` with the number of steps and the torque after

@@ -152,6 +152,13 @@ settings! {
     }
 }
 
+impl SpasticitySettings {
+    /// Returns whether it has the form `catch`; otherwise `reflex`.
+    pub fn catches(&self) -> bool {
+        self.form == 0
+    }
+}
+
 /// The threshold of a muscle: s·(φ − λ + μΩ), rad.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Threshold<F> {

@@ -62,7 +62,7 @@ impl EffectSettings {
     }
 
     /// The largest torque that the symptoms and the joint can ask for together, N·m, but for
-    /// what grows with the angle: see [`largest_within_nm`](Self::largest_within_nm).
+    /// what grows with the angle: `crepitus_scene::static_limits` adds that.
     pub fn largest_torque_nm(&self, joint: Option<&Parameters>) -> f64 {
         let joint = joint.map(|joint| joint.static_torque_nm);
         let symptoms = self.bounds().map(|most| most.torque_nm);

@@ -12,6 +12,7 @@ const DR: u32 = 0x4001_1404;
 const BRR: u32 = 0x4001_1408;
 const CR1: u32 = 0x4001_140c;
 
+const ORE: u32 = 1 << 3;
 const RXNE: u32 = 1 << 5;
 
 /// PC6 and PC7: alternate function 8.
@@ -63,6 +64,21 @@ fn what_ends_while_its_pin_is_something_else_is_lost() {
     disconnect(&mut bench);
     bench.run_us(25);
     assert_eq!(bench.read(SR) & RXNE, 0);
+}
+
+#[test]
+fn what_comes_while_a_character_waits_is_lost() {
+    let mut bench = switched_on();
+    connect(&mut bench);
+    feed(&mut bench, 0x5a, 20);
+    feed(&mut bench, 0xa5, 40);
+    bench.run_us(25);
+    assert_eq!(bench.read(SR) & (RXNE | ORE), RXNE);
+    bench.run_us(20);
+    assert_eq!(bench.read(SR) & (RXNE | ORE), RXNE | ORE);
+    assert_eq!(bench.read(DR), 0x5a);
+    // Reading both has cleared both.
+    assert_eq!(bench.read(SR) & (RXNE | ORE), 0);
 }
 
 #[test]

@@ -297,6 +297,11 @@ fn files_of_laboratories_are_read_and_what_was_assumed_is_said() {
     let row = ms.replace("knee\n", "knee\nmSec,Degrees\n");
     assert_read_as(read_csv(&row), &["line 2", "times are in ms"]);
     assert_read_as(read_timed(ms, TimeUnit::Milliseconds), &[]);
+    // From 30 s on.
+    let min = "time,knee\n0.5,0\n0.50166666666667,60\n0.50333333333333,120\n0.505,-30\n";
+    let row = min.replace("knee\n", "knee\nmin,deg\n");
+    assert_read_as(read_csv(&row), &["line 2", "times are in min"]);
+    assert_read_as(read_timed(min, TimeUnit::Minutes), &[]);
     let clock =
         "time,knee\n23:59:59.9,0\n00:00:00.0,60\n2026-01-02T00:00:00.1,120\n00:00:00.2Z,-30\n";
     assert_read_as(read_timed(clock, TimeUnit::Clock), &[]);
@@ -322,6 +327,14 @@ fn read_timed(text: &str, time_unit: TimeUnit) -> Result<Samples, String> {
         )
     };
     read_from(&source, text.as_bytes()).map_err(|error| error.to_string())
+}
+
+#[test]
+fn a_clock_goes_on_over_every_midnight() {
+    let text = "time,knee\n18:00:00,0\n04:00:00,60\n14:00:00,120\n00:00:00,90\n10:00:00,30\n";
+    let samples = read_timed(text, TimeUnit::Clock).unwrap();
+    let hours: Vec<f64> = samples.time_s.iter().map(|t| t / 3600.0).collect();
+    assert_eq!(hours, [0.0, 10.0, 20.0, 30.0, 40.0]);
 }
 
 #[test]

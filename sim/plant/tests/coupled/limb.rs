@@ -1,6 +1,6 @@
-//! The released leg.
+//! The leg: released, and led beyond what is known of it.
 
-use crate::support::{Build, Rig, root};
+use crate::support::{Build, Rig, root, through};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const MASS_KG: f64 = 0.061 * 70.0;
@@ -141,5 +141,28 @@ fn a_released_leg_comes_to_rest_where_its_torques_cancel() {
             assert!((found - known).abs() < 1e-10);
             assert!(rig.leg().omega_rad_s.abs() < 1e-10);
         }
+    }
+}
+
+#[test]
+fn a_knee_that_is_back_from_beyond_what_is_known_of_it_is_warned_of() {
+    let warnings = |farthest_deg: f64| {
+        let v = 5.0 * farthest_deg.to_radians();
+        let motion = through(&[(0.0, 0.0), (0.2, v), (0.4, 0.0), (0.6, -v), (0.8, 0.0)]);
+        let mut rig = Build::of(&[("limb", &[])]).on(motion);
+        rig.ticks(8_000, 0.0);
+        assert!((rig.leg().angle_rad - farthest_deg.to_radians()).abs() < 1e-9);
+        rig.ticks(8_000, 0.0);
+        assert!(rig.leg().angle_rad.abs() < 1e-9);
+        rig.plant.warnings()
+    };
+    for within_deg in [-19.0, 159.0] {
+        assert_eq!(warnings(within_deg), [""; 0], "{within_deg}°");
+    }
+    for beyond_deg in [-21.0, 161.0] {
+        let found = warnings(beyond_deg);
+        let words = "the knee leaves -20° to 160°";
+        assert_eq!(found.len(), 1, "{beyond_deg}°: {found:?}");
+        assert!(found[0].starts_with(words), "{beyond_deg}°: {found:?}");
     }
 }

@@ -5,6 +5,7 @@ use crate::{connected, streaming};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::{Fault, LEASE_TICKS, Session, State};
+use crepitus_virtual_device::usb::host::Traffic;
 
 /// Everything arrives, and the device does as it is asked.
 fn all_is_well(host: &mut Host) {
@@ -52,6 +53,27 @@ fn the_plug_is_pulled_and_pushed_in_again_while_it_streams() {
         assert_eq!(host.discarded, 0, "the wire begins with whole frames");
     }
     all_is_well(&mut host);
+}
+
+#[test]
+fn traffic_is_that_of_all_connections() {
+    let mut host = connected();
+    let mut sum = Traffic::default();
+    for _ in 0..3 {
+        host.subscribe();
+        host.run(500);
+        let own = host.device.host().expect("a port").traffic();
+        assert!(
+            own.frames >= 25 && own.bytes_out > 0 && own.bytes_in > 0,
+            "{own:?}"
+        );
+        sum.add(own);
+        assert_eq!(host.device.traffic(), sum);
+        host.device.unplug();
+        host.run(100);
+        assert_eq!(host.device.traffic(), sum, "without a plug");
+        host.reconnect();
+    }
 }
 
 #[test]

@@ -1,38 +1,39 @@
-//! `crepitus-faults`: plants the faults of `faults.toml` one at a time and
-//! writes which hard cases and which of the model's tests detect them; those of
-//! `firmware.toml` with the emulator's tests.
+//! `crepitus-faults`: plants the faults of `tools/faults` one at a time, and says which test
+//! notices each.
 
-mod firmware_run;
 mod mutants_run;
 
 use clap::Parser;
-use crepitus_tools::faults::fault::Fault;
-use crepitus_tools::faults::outcome::{Outcome, fingerprint};
-use crepitus_tools::faults::trial::{TrialError, Workshop};
-use crepitus_tools::faults::{fault, page, tree};
+use crepitus_tools::faults::outcome::Outcome;
+use crepitus_tools::faults::patch::Fault;
+use crepitus_tools::faults::trial::Workshop;
+use crepitus_tools::faults::{page, patch, tree};
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Plants faults in a copy of the sources and reports the checks that detect them.
+/// Plants faults in a copy of the sources and reports the tests that detect them.
 #[derive(Parser)]
 #[command(
-    after_help = "Example: cargo run -p crepitus-tools --bin crepitus-faults -- --only period-in-f32\n\n\
+    after_help = "Example: cargo run -p crepitus-tools --bin crepitus-faults -- period-in-f32\n\n\
     CREPITUS_CARGO names the cargo that builds the copy. A run that was interrupted goes on where it ended."
 )]
 struct Arguments {
-    /// Try only this fault; may be given several times.
-    #[arg(long, value_name = "NAME")]
-    only: Vec<String>,
+    /// Try only these faults.
+    #[arg(value_name = "NAME")]
+    names: Vec<String>,
+    /// Try only the faults of this folder of tools/faults.
+    #[arg(long, value_name = "AREA")]
+    area: Option<String>,
     /// List the faults and exit.
     #[arg(long)]
     list: bool,
-    /// Plant the faults of the drive's firmware instead of those of the model.
-    #[arg(long)]
-    firmware: bool,
+    /// Write the page of all faults here.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["names", "area"])]
+    page: Option<PathBuf>,
     /// Try every mutant that `cargo mutants` lists of this crate: model, device or protocol.
-    #[arg(long, value_name = "CRATE", conflicts_with_all = ["only", "list", "firmware", "cases_only", "page"])]
+    #[arg(long, value_name = "CRATE", conflicts_with_all = ["names", "area", "list", "page"])]
     mutants: Option<String>,
     /// Arguments of `cargo test` for the tests that are to notice mutants, instead of the
     /// crate's own and those that compare with it; may be given several times.
@@ -43,18 +44,12 @@ struct Arguments {
         allow_hyphen_values = true
     )]
     tests: Vec<String>,
-    /// Run the hard cases only, and leave the model's tests to a later run.
-    #[arg(long)]
-    cases_only: bool,
     /// Root of the repository.
     #[arg(long, value_name = "DIR", default_value = ".")]
     root: PathBuf,
     /// Scratch folder: the copy, its build, results so far.
     #[arg(long, value_name = "DIR", default_value = "target/faults")]
     scratch: PathBuf,
-    /// Write the page of all faults here.
-    #[arg(long, value_name = "FILE")]
-    page: Option<PathBuf>,
 }
 
 fn main() -> ExitCode {
@@ -71,117 +66,71 @@ fn work(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
     if let Some(folder) = &arguments.mutants {
         return mutants_run::work(arguments, folder);
     }
-    if arguments.firmware {
-        return firmware_run::work(arguments);
-    }
-    let all = fault::all()?;
-    if arguments.list {
-        for fault in &all {
-            println!("{:28} {}", fault.name, fault.what);
-        }
-        return Ok(ExitCode::SUCCESS);
-    }
-    if let Some(unknown) = arguments
-        .only
-        .iter()
-        .find(|name| !all.iter().any(|fault| fault.name == **name))
-    {
+    let all = patch::all(&arguments.root)?;
+    let (names, area) = (&arguments.names, arguments.area.as_ref());
+    let is_known = |name: &&String| all.iter().any(|fault| fault.name == **name);
+    if let Some(unknown) = names.iter().find(|name| !is_known(name)) {
         eprintln!("crepitus-faults: no fault `{unknown}`; --list shows all");
         return Ok(ExitCode::from(2));
     }
-    let wanted = |name: &String| arguments.only.is_empty() || arguments.only.contains(name);
-    let scratch = std::path::absolute(&arguments.scratch)?;
-    let known = scratch.join("known");
-    std::fs::create_dir_all(&known)?;
-    let sources = tree::fingerprint(&arguments.root)?;
-    let mut bench = Bench {
-        arguments,
-        scratch: &scratch,
-        faults: &all,
-        workshop: None,
+    let is_wanted = |fault: &Fault| {
+        (names.is_empty() || names.contains(&fault.name))
+            && area.is_none_or(|area| fault.area == *area)
     };
-    let mut outcomes = Vec::new();
-    for (number, fault) in (1..).zip(&all) {
-        let print = fingerprint(sources, fault);
-        let known_so_far = Outcome::load(&known, &fault.name, print);
-        let outcome = if wanted(&fault.name) {
-            let outcome = bench.complete(number, fault, print, known_so_far, &known)?;
-            println!("{}", page::line(&outcome));
-            outcome
-        } else if let Some(outcome) = known_so_far {
-            outcome
-        } else {
-            continue;
-        };
-        outcomes.push((fault.clone(), outcome));
+    let wanted: Vec<Fault> = all.into_iter().filter(is_wanted).collect();
+    if wanted.is_empty() {
+        eprintln!("crepitus-faults: there is no such fault; --list shows all");
+        return Ok(ExitCode::from(2));
     }
-    println!("{}", page::totals(&outcomes));
-    if let Some(file) = &arguments.page {
-        if outcomes.len() < all.len() {
-            let left = all.len() - outcomes.len();
-            return Err(format!("no page: {left} faults are not tried yet").into());
+    if arguments.list {
+        for fault in &wanted {
+            println!("{:10} {:34} {}", fault.area, fault.name, fault.what);
         }
-        std::fs::write(file, page::page(&outcomes))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let tried = try_all(arguments, wanted)?;
+    println!("{}", page::totals(&tried));
+    if let Some(file) = &arguments.page {
+        std::fs::write(file, page::page(&tried))?;
         println!("wrote {}", file.display());
     }
-    let unexplained = outcomes.iter().any(|(fault, outcome)| {
-        (outcome.noticed_by().next().is_none() && fault.unseen_by_cases.is_none())
-            || (outcome.tested && outcome.test.is_none() && fault.unseen_by_tests.is_none())
-    });
-    Ok(if unexplained {
+    Ok(if tried.iter().any(page::is_hole) {
         ExitCode::FAILURE
     } else {
         ExitCode::SUCCESS
     })
 }
 
-/// Tries faults without a result; built when first needed.
-struct Bench<'a> {
-    arguments: &'a Arguments,
-    scratch: &'a Path,
-    faults: &'a [Fault],
-    workshop: Option<Workshop>,
-}
-
-impl Bench<'_> {
-    fn workshop(&mut self) -> Result<&Workshop, TrialError> {
-        let open = if let Some(open) = self.workshop.take() {
-            open
-        } else {
-            let all = self.faults.len();
-            eprintln!("building with {all} faults; with none in force, all must hold");
-            let cargo = std::env::var("CREPITUS_CARGO").unwrap_or_else(|_| "cargo".to_owned());
-            let (root, tests) = (&self.arguments.root, !self.arguments.cases_only);
-            Workshop::open(root, self.scratch, &cargo, self.faults, tests)?
-        };
-        Ok(self.workshop.insert(open))
+/// Tries the faults that have no result yet, and prints a line a fault.
+fn try_all(arguments: &Arguments, faults: Vec<Fault>) -> Result<Vec<page::Tried>, Box<dyn Error>> {
+    let known = arguments.scratch.join("known");
+    std::fs::create_dir_all(&known)?;
+    let sources = tree::fingerprint(&arguments.root)?;
+    let load = |fault: &Fault| Outcome::load(&known, &fault.name, fault.fingerprint(sources));
+    let cargo = std::env::var("CREPITUS_CARGO").unwrap_or_else(|_| "cargo".to_owned());
+    let mut workshop = Workshop::open(&arguments.root, &arguments.scratch, &cargo)?;
+    eprintln!("without a fault all tests must pass");
+    for fault in faults.iter().filter(|fault| load(fault).is_none()) {
+        workshop.baseline(fault)?;
     }
-
-    /// The outcome of a fault, with its `known` results.
-    fn complete(
-        &mut self,
-        number: usize,
-        fault: &Fault,
-        print: u64,
-        known: Option<Outcome>,
-        folder: &Path,
-    ) -> Result<Outcome, Box<dyn Error>> {
-        let (begun, all) = (Instant::now(), self.faults.len());
-        let mut outcome = if let Some(outcome) = known {
+    let (mut tried, all) = (Vec::new(), faults.len());
+    for (number, fault) in (1..).zip(faults) {
+        let outcome = if let Some(outcome) = load(&fault) {
             outcome
         } else {
-            let outcome = self.workshop()?.try_cases(number, fault, print)?;
-            outcome.save(folder)?;
+            let begun = Instant::now();
+            let outcome = workshop.attempt(&fault)?;
+            // A build may fail for other reasons, too.
+            if outcome != Outcome::DoesNotBuild {
+                outcome.save(&known, &fault.name, fault.fingerprint(sources))?;
+            }
+            let took = begun.elapsed().as_secs();
+            eprintln!("{number:3}/{all} {} ({took} s)", fault.name);
             outcome
         };
-        if !outcome.tested && !self.arguments.cases_only {
-            self.workshop()?.try_tests(number, &mut outcome)?;
-            outcome.save(folder)?;
-        }
-        let took = begun.elapsed().as_secs();
-        if took > 0 {
-            eprintln!("{number:2}/{all} {} ({took} s)", fault.name);
-        }
-        Ok(outcome)
+        let result = (fault, outcome);
+        println!("{}", page::line(&result));
+        tried.push(result);
     }
+    Ok(tried)
 }

@@ -5,7 +5,6 @@ use crate::output::to_stderr;
 use crate::studying::Watch;
 use crepitus_emulator::on_target::{self, OnTarget};
 use crepitus_studies::accuracy::target::inputs::Lengths;
-use crepitus_studies::accuracy::target::table::target_table;
 use crepitus_studies::accuracy::target::{self, TargetError};
 use crepitus_studies::accuracy::{Study, StudyScene};
 
@@ -40,27 +39,4 @@ pub(super) fn add(
     })?;
     study.target = Some(costs);
     Ok(())
-}
-
-/// Criterion by which the target chooses, where it does.
-pub(super) fn chooses_by(on: &target::OnTarget) -> String {
-    format!(
-        "By mean cycles on the target ({}), equal means by the worst observed; that must fit {:.0} % of a tick, {:.0} \
-         cycles.\n",
-        on.label,
-        100.0 * target::STEP_SHARE,
-        target::STEP_SHARE * on.tick_cycles
-    )
-}
-
-/// Returns the costs on the target as a table, for the terminal and for a page of the book.
-pub(super) fn table(on: &target::OnTarget) -> String {
-    format!(
-        "A step on the target, in f32 at the device's tick ({}; a tick has {}):\n\n{}\n\
-         {} steps, every output the same to the bit as on the host.\n",
-        on.label,
-        on.tick_cycles,
-        target_table(&on.rows).to_markdown(),
-        on.steps
-    )
 }

@@ -2,9 +2,10 @@
 
 use super::{chart, page};
 use crate::failure::Failure;
-use crate::results::{footer, json_file, svg_files, write as write_files};
+use crate::results::{json_file, svg_files, write as write_files};
 use crepitus_files::output::{Folder, NewFile};
 use crepitus_identify::brace::{Brace, scene};
+use crepitus_pages::words::footer;
 use serde_json::Value;
 use std::io::Write;
 use std::path::Path;

@@ -14,6 +14,7 @@ use crepitus_model::render::effects::play::Limits;
 use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_model::render::effects::texture::TextureSettings;
+use crepitus_scene::static_limits;
 use crepitus_scene::trace::Word;
 
 /// Inks of the limits: of the outer or only ones, and of the others.
@@ -137,7 +138,7 @@ fn range_limit(drawn: &mut Drawn, s: &RangeLimitSettings) {
         let beyond_deg = (2.0 * end.cap_rad().to_degrees()).max(2.0);
         let far_deg = deg + along * beyond_deg;
         drawn.curve(OUTER, NAME, (deg, far_deg), |rad| {
-            let limits = s.limits_at(rad);
+            let limits = static_limits::range_limit::limits_at(s, rad);
             limits.lower_nm + limits.upper_nm
         });
         drawn.mark(deg, name);
@@ -147,16 +148,16 @@ fn range_limit(drawn: &mut Drawn, s: &RangeLimitSettings) {
 
 fn lead_pipe(drawn: &mut Drawn, s: &LeadPipeSettings, ends: (f64, f64)) {
     drawn.band(OUTER, "limits of the rigidity", ends, |rad| {
-        s.limits_at(rad)
+        static_limits::lead_pipe::limits_at(s, rad)
     });
 }
 
 fn cogwheel(drawn: &mut Drawn, s: &CogwheelSettings, ends: (f64, f64)) {
     drawn.band(OUTER, "limits at a tooth", ends, |rad| {
-        s.limits_at(rad, true)
+        static_limits::cogwheel::limits_at(s, rad, true)
     });
     drawn.band(INNER, "limits between teeth", ends, |rad| {
-        s.limits_at(rad, false)
+        static_limits::cogwheel::limits_at(s, rad, false)
     });
 }
 
@@ -173,13 +174,13 @@ fn onwards(deg: f64, sense: f64, (low, high): (f64, f64)) -> (f64, f64) {
 }
 
 fn spasticity(drawn: &mut Drawn, s: &SpasticitySettings, ends: (f64, f64), met: &[Met]) {
-    let threshold_deg = s.threshold_rad(0.0).to_degrees();
+    let threshold_deg = static_limits::spasticity::threshold_rad(s, 0.0).to_degrees();
     drawn.mark(threshold_deg, "threshold of a slow stretch:");
-    let sense = s.sense();
+    let sense = static_limits::spasticity::sense(s);
     if !s.catches() {
         let slow = onwards(threshold_deg, sense, ends);
         drawn.curve(OUTER, "a very slow stretch", slow, |rad| {
-            s.reflex_nm(rad, 0.0)
+            static_limits::spasticity::reflex_nm(s, rad, 0.0)
         });
     }
     for Met { event, .. } in met.iter().take(CATCHES) {
@@ -187,18 +188,19 @@ fn spasticity(drawn: &mut Drawn, s: &SpasticitySettings, ends: (f64, f64), met: 
         let from_deg = caught_rad.to_degrees();
         let after = onwards(from_deg, sense, ends);
         if s.catches() {
-            let height = [0.0, sense * s.catch_nm(rad_s)];
+            let height_nm = sense * static_limits::spasticity::catch_nm(s, rad_s);
+            let height = [0.0, height_nm];
             let height = height.map(|nm| Point::new(from_deg, nm)).to_vec();
             drawn.line(OUTER, "height of a catch at its speed", height);
             drawn.curve(INNER, "what is left after its release", after, |rad| {
-                s.left_nm(caught_rad, rad_s, rad)
+                static_limits::spasticity::left_nm(s, caught_rad, rad_s, rad)
             });
         } else {
             drawn.curve(
                 INNER,
                 "at the speed of the stretch, without its delay",
                 after,
-                |rad| s.reflex_nm(rad, rad_s),
+                |rad| static_limits::spasticity::reflex_nm(s, rad, rad_s),
             );
         }
     }
@@ -208,25 +210,28 @@ fn clasp_knife(drawn: &mut Drawn, s: &ClaspKnifeSettings, ends: (f64, f64), met:
     let released = met.iter().map(|met| met.event);
     let released = released.filter(|event| event.word == Word::Release);
     let released_rad = released.map(|event| event.angle_rad).next();
-    let release_rad = s.release_rad();
+    let sense = static_limits::clasp_knife::sense(s);
+    let release_rad = static_limits::clasp_knife::release_rad(s);
     let end_deg = match release_rad.or(released_rad) {
         Some(rad) => rad.to_degrees(),
-        None => onwards(s.onset_deg, s.sense(), ends).1,
+        None => onwards(s.onset_deg, sense, ends).1,
     };
     drawn.curve(OUTER, "builds up along", (s.onset_deg, end_deg), |rad| {
-        s.building_nm(rad)
+        static_limits::clasp_knife::building_nm(s, rad)
     });
     drawn.mark(s.onset_deg, "resistance begins at");
     if let Some(rad) = release_rad {
         drawn.mark(rad.to_degrees(), "collapses at");
     }
     if let Some(rad) = released_rad {
-        drawn.curve(INNER, "what the collapse leaves", ends, |_| s.left_nm(rad));
+        let left_nm = static_limits::clasp_knife::left_nm(s, rad);
+        drawn.curve(INNER, "what the collapse leaves", ends, |_| left_nm);
     }
 }
 
 fn clonus(drawn: &mut Drawn, s: &ClonusSettings, ends: (f64, f64)) {
-    drawn.curve(OUTER, "height of a beat", ends, |_| s.beat_nm());
+    let beat_nm = static_limits::clonus::beat_nm(s);
+    drawn.curve(OUTER, "height of a beat", ends, |_| beat_nm);
     drawn.mark(s.hold_deg, "held beyond");
 }
 

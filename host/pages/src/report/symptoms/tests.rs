@@ -11,6 +11,7 @@ use crate::report::channels::Setup;
 use crate::report::collector::{Collector, Figures};
 use crate::report::fixture::symptom::{EXAMINED, Item, STEPPED, ran, scene};
 use crepitus_model::render::effects::{EffectSettings, SPECS};
+use crepitus_scene::static_limits::spasticity;
 use crepitus_scene::trace::{Column, ColumnKind, SymptomEvent, Word};
 
 fn collect(effects: &EffectSettings, columns: &[Column], items: &[Item]) -> Figures {
@@ -126,10 +127,11 @@ fn a_catch_is_found_where_and_as_strong_as_it_is() {
             let event = &met.event;
             near(event.angle_rad.to_degrees(), deg, 0.01);
             near(event.omega_rad_s.to_degrees(), deg_s, 0.01);
-            near(settings.catch_nm(event.omega_rad_s), nm, 5e-3);
+            let catch_nm = spasticity::catch_nm(&settings, event.omega_rad_s);
+            near(catch_nm, nm, 5e-3);
             // The catch releases while it builds up.
             near(met.most_nm, 0.93 * nm, 0.02 * nm);
-            let threshold_rad = settings.threshold_rad(event.omega_rad_s);
+            let threshold_rad = spasticity::threshold_rad(&settings, event.omega_rad_s);
             near(threshold_rad, event.angle_rad, 1e-4);
         }
     }

@@ -4,18 +4,17 @@
 use super::SymptomPlan;
 use super::motions::motions;
 use crate::accuracy::scenes;
-use crate::accuracy::timing::{Cost, LEAST_STEPS, MOST_STEPS, Track, cost};
-use crate::sampling::{CHUNK_STEPS, Sampling};
+use crate::accuracy::timing::{Cost, MOST_STEPS, Track, cost, ns_per_step, stepping};
+use crate::sampling::Sampling;
 use crate::symptoms::Given;
-use crate::symptoms::follow::{tick, timing};
+use crate::symptoms::follow::timing;
 use crate::watcher::{Cancelled, StudyError};
-use crepitus_model::render::effects::{DeviceEffect, LawVisitor};
-use crepitus_model::render::position::{Position, Scale, Sensing};
+use crepitus_ladder::loops::{Loops, PlacedStep};
+use crepitus_model::render::position::Sensing;
 use crepitus_model::solver::Solver;
-use crepitus_model::{Convention, Real, SettingsError, ShaftStep};
+use crepitus_model::{Convention, Real, SettingsError};
 use crepitus_scene::cpu_time;
 use crepitus_scene::scene::Precision;
-use std::hint::black_box;
 use std::time::Duration;
 
 /// The scene of the crepitus that they are compared with.
@@ -118,8 +117,8 @@ struct Steps {
     from_rad: f64,
     /// Cost of reading the clock in each chunk.
     reading: Duration,
-    single: Vec<(ShaftStep<f32>, Position<f32>)>,
-    double: Vec<(ShaftStep<f64>, Position<f64>)>,
+    single: Vec<PlacedStep<f32>>,
+    double: Vec<PlacedStep<f64>>,
 }
 
 impl Steps {
@@ -145,68 +144,21 @@ impl Steps {
         }
     }
 
-    fn run<F: Real>(
-        &self,
-        given: &Given,
-        steps: &[(ShaftStep<F>, Position<F>)],
-    ) -> Result<f64, SettingsError> {
-        let (mut total, mut timed) = (Duration::ZERO, 0_u64);
-        let length = u64::try_from(steps.len()).unwrap_or(u64::MAX);
-        let settings = given.settings();
-        let timing = timing(self.step_s);
-        while timed < LEAST_STEPS.max(length) && length > 0 {
-            let visitor = Timed {
-                steps,
-                from: Sensing::IDEAL.position(self.from_rad),
-                scale: timing.scale()?,
-                reading: self.reading,
-            };
-            let took = settings.with_law::<F, _>(given.place(), &timing, visitor)?;
-            total += took.unwrap_or_default();
-            timed += length;
-        }
-        Ok(total.as_secs_f64() * 1e9 / f64::from_whole(timed))
+    fn run<F: Loops>(&self, given: &Given, steps: &[PlacedStep<F>]) -> Result<f64, SettingsError> {
+        let (settings, place) = (given.settings(), given.place());
+        let (timing, from) = (timing(self.step_s), Sensing::IDEAL.position(self.from_rad));
+        ns_per_step(steps, |total| {
+            F::law(&settings, place, &timing, &from, &mut |stepper| {
+                *total += stepping(steps, self.reading, stepper);
+            })
+        })
     }
 }
 
-fn prepared<F: Real>(
-    sampling: &Sampling<'_>,
-    start: u64,
-    most: u64,
-) -> Vec<(ShaftStep<F>, Position<F>)> {
+fn prepared<F: Real>(sampling: &Sampling<'_>, start: u64, most: u64) -> Vec<PlacedStep<F>> {
     let mut chunk = Vec::new();
     let most = usize::try_from(most).unwrap_or(usize::MAX);
     sampling.walk_from(start).fill_with_angles(&mut chunk, most);
     let place = |(angle_rad, step)| (step, Sensing::IDEAL.position(angle_rad));
     chunk.into_iter().map(place).collect()
-}
-
-struct Timed<'a, F> {
-    steps: &'a [(ShaftStep<F>, Position<F>)],
-    from: Position<F>,
-    scale: Scale<F>,
-    reading: Duration,
-}
-
-impl<F: Real> LawVisitor<F> for Timed<'_, F> {
-    type Output = Duration;
-
-    fn visit<E: DeviceEffect<F>>(self, mut law: E) -> Duration {
-        law.rest(&self.from);
-        let mut total = Duration::ZERO;
-        let mut cached = Vec::with_capacity(CHUNK_STEPS);
-        for part in self.steps.chunks(CHUNK_STEPS) {
-            cached.clear();
-            cached.extend_from_slice(part);
-            let steps = black_box(cached.as_slice());
-            let begun = cpu_time::now();
-            for (shaft, place) in steps {
-                black_box(tick(&mut law, shaft, *place, &self.scale, |change| {
-                    black_box(change);
-                }));
-            }
-            total += cpu_time::since(begun).saturating_sub(self.reading);
-        }
-        total
-    }
 }

@@ -50,7 +50,7 @@ fn within(what: Measure, from_s: Option<f64>, least: f64, most: f64) -> Criterio
 const STROKE_MM: f64 = 1.6;
 const SUPPLY_V: f64 = 5.0;
 
-fn case(
+const fn case(
     (id, name, title): (&'static str, &'static str, &'static str),
     hard: &'static str,
     trials: fn(Subject) -> Vec<Trial>,
@@ -82,7 +82,31 @@ fn trials<const N: usize>(
     runs.into_iter().map(trial).collect()
 }
 
-pub(super) fn lets_go() -> Case {
+/// The loop without lateness, and four ticks late.
+fn loops(
+    subject: Subject,
+    linear: ActuatorLoop,
+    on_time: Vec<Criterion>,
+    late: Vec<Criterion>,
+) -> Vec<Trial> {
+    if !shakes(subject) {
+        return Vec::new();
+    }
+    let late_linear = ActuatorLoop {
+        late_ticks: 4,
+        ..linear
+    };
+    [(linear, on_time), (late_linear, late)]
+        .map(|(linear, criteria)| Trial {
+            settings: Settings::default(),
+            input: Input::ActuatorLoop(linear),
+            criteria,
+        })
+        .into()
+}
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     case(
         ("H76", "actuator-let-go", "The hand lets go of the shell"),
         "Without the hand's mass and tissue the shell moves up to twice as much, and nothing but the seat damps it. The \
@@ -121,10 +145,7 @@ pub(super) fn lets_go() -> Case {
                 ],
             )
         },
-    )
-}
-
-pub(super) fn at_its_stops() -> Case {
+    ),
     case(
         (
             "H77",
@@ -154,10 +175,7 @@ pub(super) fn at_its_stops() -> Case {
                 )],
             )
         },
-    )
-}
-
-pub(super) fn at_the_rail() -> Case {
+    ),
     case(
         (
             "H78",
@@ -190,10 +208,7 @@ pub(super) fn at_the_rail() -> Case {
                 )],
             )
         },
-    )
-}
-
-pub(super) fn mean_step() -> Case {
+    ),
     case(
         (
             "H79",
@@ -222,10 +237,7 @@ pub(super) fn mean_step() -> Case {
                 )],
             )
         },
-    )
-}
-
-pub(super) fn crawl() -> Case {
+    ),
     case(
         ("H80", "actuator-crawl", "0.02 rad/s: nine breaks a second"),
         "Below the corner of the high-pass there is hardly a ripple left, and each break is an event on its own. The \
@@ -248,10 +260,7 @@ pub(super) fn crawl() -> Case {
                 )],
             )
         },
-    )
-}
-
-pub(super) fn hot_coil() -> Case {
+    ),
     case(
         ("H81", "actuator-hot", "A coil that bears little current"),
         "It is asked for several times the current that it bears for ever. The command is reduced until the mean square is within, \
@@ -271,10 +280,7 @@ pub(super) fn hot_coil() -> Case {
             let bounds = within(Measure::CurrentRms, Some(5.0), 0.05, 0.13);
             trials(subject, [(run, vec![bounds])])
         },
-    )
-}
-
-pub(super) fn disarmed() -> Case {
+    ),
     case(
         (
             "H82",
@@ -306,10 +312,7 @@ pub(super) fn disarmed() -> Case {
                 ],
             )
         },
-    )
-}
-
-pub(super) fn gain_ramp() -> Case {
+    ),
     case(
         (
             "H83",
@@ -339,10 +342,7 @@ pub(super) fn gain_ramp() -> Case {
                 )],
             )
         },
-    )
-}
-
-pub(super) fn all_off() -> Case {
+    ),
     case(
         (
             "H84",
@@ -396,10 +396,7 @@ pub(super) fn all_off() -> Case {
                 ],
             )
         },
-    )
-}
-
-pub(super) fn lost_samples() -> Case {
+    ),
     case(
         ("H85", "actuator-lost-samples", "Bursts of lost samples"),
         "Of every 400 samples 15 in a row are missing: the torque is held, then released, and comes back. Each of these is a step \
@@ -426,33 +423,7 @@ pub(super) fn lost_samples() -> Case {
                 )],
             )
         },
-    )
-}
-
-/// The loop without lateness, and four ticks late.
-fn loops(
-    subject: Subject,
-    linear: ActuatorLoop,
-    on_time: Vec<Criterion>,
-    late: Vec<Criterion>,
-) -> Vec<Trial> {
-    if !shakes(subject) {
-        return Vec::new();
-    }
-    let late_linear = ActuatorLoop {
-        late_ticks: 4,
-        ..linear
-    };
-    [(linear, on_time), (late_linear, late)]
-        .map(|(linear, criteria)| Trial {
-            settings: Settings::default(),
-            input: Input::ActuatorLoop(linear),
-            criteria,
-        })
-        .into()
-}
-
-pub(super) fn held_loop() -> Case {
+    ),
     case(
         (
             "H86",
@@ -475,10 +446,7 @@ pub(super) fn held_loop() -> Case {
                 vec![at_most(Measure::LoopInPhase, 0.5)],
             )
         },
-    )
-}
-
-pub(super) fn free_loop() -> Case {
+    ),
     case(
         (
             "H87",
@@ -496,5 +464,5 @@ pub(super) fn free_loop() -> Case {
             let stable = || vec![at_most(Measure::LoopInPhase, 0.5)];
             loops(subject, linear, stable(), stable())
         },
-    )
-}
+    ),
+];

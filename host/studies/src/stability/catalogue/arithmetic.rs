@@ -61,7 +61,8 @@ fn double_only() -> Vec<([f64; 5], Shaft, f64)> {
     ]
 }
 
-pub(super) fn precisions() -> Case {
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H35",
         name: "precisions",
@@ -89,10 +90,7 @@ pub(super) fn precisions() -> Case {
                 })
                 .collect()
         },
-    }
-}
-
-pub(super) fn golden() -> Case {
+    },
     Case {
         id: "H36",
         name: "golden-bits",
@@ -139,5 +137,5 @@ pub(super) fn golden() -> Case {
             })
             .to_vec()
         },
-    }
-}
+    },
+];

@@ -9,7 +9,31 @@ use crepitus_model::{Convention, Parameters};
 use crepitus_scene::preset::joints;
 use crepitus_scene::scene::Precision;
 
-pub(super) fn equal_torques_ramp() -> Case {
+// Each slip of 23.6 ms begins at 0.1 rad/s, 10 ms after a stick at 0 N·m.
+const TWO_SLIPS: &[(f64, f64, f64)] = &[
+    (0.0, 0.1, 0.1),
+    (0.011, 0.1, -0.004),
+    (0.026, -0.004, 0.0),
+    (0.034, 0.0, 0.1),
+    (0.044_2, 0.1, -0.004),
+    (0.054_2, -0.004, 0.0),
+    (0.06, 0.0, 0.0),
+];
+const RETREAT: &[(f64, f64, f64)] = &[
+    (0.0, 0.1, 0.1),
+    (0.011, 0.1, -0.02),
+    (0.021, -0.02, 0.0),
+    (0.05, 0.0, 0.0),
+];
+const THERE_AND_BACK: &[(f64, f64, f64)] = &[
+    (0.0, 0.1, 0.1),
+    (0.02, 0.1, -0.02),
+    (0.03, -0.02, 0.1),
+    (0.1, 0.1, 0.1),
+];
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H43",
         name: "equal-torques-ramp",
@@ -55,10 +79,7 @@ pub(super) fn equal_torques_ramp() -> Case {
             let input = changed(Shaft::Constant(1.0), 0.13, &changes);
             vec![trial(settings, input, [Criterion::Survives])]
         },
-    }
-}
-
-pub(super) fn softer_under_load() -> Case {
+    },
     Case {
         id: "H44",
         name: "softer-under-load",
@@ -96,10 +117,7 @@ pub(super) fn softer_under_load() -> Case {
                 })
                 .to_vec()
         },
-    }
-}
-
-pub(super) fn stronger_in_a_slip() -> Case {
+    },
     Case {
         id: "H45",
         name: "stronger-in-a-slip",
@@ -153,10 +171,7 @@ pub(super) fn stronger_in_a_slip() -> Case {
             trials.push(trial(paper_joint(subject.convention), input, [slip]));
             trials
         },
-    }
-}
-
-pub(super) fn commits_while_blind() -> Case {
+    },
     Case {
         id: "H46",
         name: "commits-while-blind",
@@ -202,32 +217,7 @@ pub(super) fn commits_while_blind() -> Case {
             }
             trials
         },
-    }
-}
-
-pub(super) fn guard_memory() -> Case {
-    // Each slip of 23.6 ms begins at 0.1 rad/s, 10 ms after a stick at 0 N·m.
-    const TWO_SLIPS: &[(f64, f64, f64)] = &[
-        (0.0, 0.1, 0.1),
-        (0.011, 0.1, -0.004),
-        (0.026, -0.004, 0.0),
-        (0.034, 0.0, 0.1),
-        (0.044_2, 0.1, -0.004),
-        (0.054_2, -0.004, 0.0),
-        (0.06, 0.0, 0.0),
-    ];
-    const RETREAT: &[(f64, f64, f64)] = &[
-        (0.0, 0.1, 0.1),
-        (0.011, 0.1, -0.02),
-        (0.021, -0.02, 0.0),
-        (0.05, 0.0, 0.0),
-    ];
-    const THERE_AND_BACK: &[(f64, f64, f64)] = &[
-        (0.0, 0.1, 0.1),
-        (0.02, 0.1, -0.02),
-        (0.03, -0.02, 0.1),
-        (0.1, 0.1, 0.1),
-    ];
+    },
     Case {
         id: "H47",
         name: "guard-memory",
@@ -307,5 +297,5 @@ pub(super) fn guard_memory() -> Case {
             trials.push(trial(weak, Input::Rendered(dithered), [ticks(0, 0)]));
             trials
         },
-    }
-}
+    },
+];

@@ -8,7 +8,51 @@ use crate::stability::subject::Subject;
 use crepitus_model::Convention;
 use crepitus_scene::scene::Precision;
 
-pub(super) fn near_critical_damping() -> Case {
+/// One break, then the object comes to rest under the constant Tk.
+fn strong_damping_trial(subject: Subject, duration_s: f64) -> Vec<Trial> {
+    if subject.convention == Convention::Frozen {
+        return Vec::new();
+    }
+    let settings = joint(subject.convention, [0.01, 400.0, 0.08, 0.2, 0.4]);
+    let input = Input::Repeated {
+        omega_rad_s: 1.0,
+        duration_s,
+        step_s: 1e-3,
+    };
+    let criteria = [
+        exactly(Counted::Events, 1),
+        Criterion::TorqueWithin {
+            from_s: 0.01,
+            low_nm: 0.2,
+            high_nm: 0.2,
+            slack_nm: 1e-7,
+        },
+    ];
+    vec![trial(settings, input, criteria)]
+}
+
+const STRONG_DAMPING: Case = Case {
+    id: "H12",
+    name: "strong-damping",
+    title: "Damping ratio 0.02: slides for ever after one break",
+    hard: "The object's motion decays through all exponents into subnormal numbers. A method with negative \
+           numerical damping rings instead, and sticks again.",
+    source: "tests/reference-cases, e18, with 50 digits",
+    long: false,
+    must: located,
+    trials: |subject| {
+        let mut trials = strong_damping_trial(subject, 300.0);
+        trials.extend(trials.first().cloned().map(|first| Trial {
+            input: at_tick(Shaft::Constant(1.0), 10.0),
+            criteria: vec![events(LOCATED)],
+            ..first
+        }));
+        trials
+    },
+};
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H11",
         name: "near-critical-damping",
@@ -46,61 +90,14 @@ pub(super) fn near_critical_damping() -> Case {
                 run(0.1, slow * (1.0 + off), 1),
             ]
         },
-    }
-}
-
-/// One break, then the object comes to rest under the constant Tk.
-fn strong_damping_trial(subject: Subject, duration_s: f64) -> Vec<Trial> {
-    if subject.convention == Convention::Frozen {
-        return Vec::new();
-    }
-    let settings = joint(subject.convention, [0.01, 400.0, 0.08, 0.2, 0.4]);
-    let input = Input::Repeated {
-        omega_rad_s: 1.0,
-        duration_s,
-        step_s: 1e-3,
-    };
-    let criteria = [
-        exactly(Counted::Events, 1),
-        Criterion::TorqueWithin {
-            from_s: 0.01,
-            low_nm: 0.2,
-            high_nm: 0.2,
-            slack_nm: 1e-7,
-        },
-    ];
-    vec![trial(settings, input, criteria)]
-}
-
-pub(super) fn strong_damping() -> Case {
-    Case {
-        id: "H12",
-        name: "strong-damping",
-        title: "Damping ratio 0.02: slides for ever after one break",
-        hard: "The object's motion decays through all exponents into subnormal numbers. A method with negative \
-               numerical damping rings instead, and sticks again.",
-        source: "tests/reference-cases, e18, with 50 digits",
-        long: false,
-        must: located,
-        trials: |subject| {
-            let mut trials = strong_damping_trial(subject, 300.0);
-            trials.extend(trials.first().cloned().map(|first| Trial {
-                input: at_tick(Shaft::Constant(1.0), 10.0),
-                criteria: vec![events(LOCATED)],
-                ..first
-            }));
-            trials
-        },
-    }
-}
-
-pub(super) fn strong_damping_long() -> Case {
+    },
+    STRONG_DAMPING,
     Case {
         id: "H12L",
         name: "strong-damping-24h",
         title: "Sliding for 24 hours after one break",
         long: true,
         trials: |subject| strong_damping_trial(subject, 86_400.0),
-        ..strong_damping()
-    }
-}
+        ..STRONG_DAMPING
+    },
+];

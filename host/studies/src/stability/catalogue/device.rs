@@ -10,7 +10,8 @@ use crepitus_model::parameters::Tabled;
 use crepitus_model::{Convention, Parameters};
 use crepitus_scene::preset::joints;
 
-pub(super) fn impossible_samples() -> Case {
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H21",
         name: "impossible-samples",
@@ -47,10 +48,7 @@ pub(super) fn impossible_samples() -> Case {
                 trial(settings, blind, silence),
             ]
         },
-    }
-}
-
-pub(super) fn gap() -> Case {
+    },
     Case {
         id: "H28",
         name: "gap",
@@ -90,10 +88,7 @@ pub(super) fn gap() -> Case {
                 [Criterion::TorqueStep { most_nm }, breaks, first],
             )]
         },
-    }
-}
-
-pub(super) fn parameter_changes() -> Case {
+    },
     Case {
         id: "H29",
         name: "parameter-changes",
@@ -166,10 +161,7 @@ pub(super) fn parameter_changes() -> Case {
                 })
                 .to_vec()
         },
-    }
-}
-
-pub(super) fn shaking_hand() -> Case {
+    },
     Case {
         id: "H37",
         name: "shaking-hand",
@@ -226,5 +218,5 @@ pub(super) fn shaking_hand() -> Case {
             }
             trials
         },
-    }
-}
+    },
+];

@@ -15,13 +15,39 @@ fn frozen_located(subject: Subject) -> bool {
     located(subject) && subject.convention == Convention::Frozen
 }
 
-pub(super) fn counter_wrap() -> Case {
-    const TEN_THOUSAND: &[(f64, f64, f64)] = &[
-        (0.0, 1000.0, 1000.0),
-        (62.85, 1000.0, 1000.0),
-        (63.0, 1.0, 1.0),
-        (65.0, 1.0, 1.0),
+/// Criteria for a joint behind an encoder at a steady speed.
+fn behind_encoder(subject: Subject, omega_rad_s: f64, input: Input) -> Trial {
+    let settings = paper_joint(subject.convention);
+    let p = &settings.parameters;
+    let mut criteria = vec![
+        Criterion::CycleRate {
+            hz: cycle_hz(p, omega_rad_s),
+            within: Limits::both(1e-2),
+        },
+        Criterion::IntervalVariation { most: 3e-2 },
     ];
+    if subject.convention != Convention::Frozen {
+        // At most 2·f_max cycles of two events each.
+        criteria.push(Criterion::EventsPerSecond {
+            most: 4.0 * most_hz(p),
+        });
+    }
+    Trial {
+        settings,
+        input,
+        criteria,
+    }
+}
+
+const TEN_THOUSAND: &[(f64, f64, f64)] = &[
+    (0.0, 1000.0, 1000.0),
+    (62.85, 1000.0, 1000.0),
+    (63.0, 1.0, 1.0),
+    (65.0, 1.0, 1.0),
+];
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H25",
         name: "counter-wrap",
@@ -66,34 +92,7 @@ pub(super) fn counter_wrap() -> Case {
             }
             trials
         },
-    }
-}
-
-/// Criteria for a joint behind an encoder at a steady speed.
-fn behind_encoder(subject: Subject, omega_rad_s: f64, input: Input) -> Trial {
-    let settings = paper_joint(subject.convention);
-    let p = &settings.parameters;
-    let mut criteria = vec![
-        Criterion::CycleRate {
-            hz: cycle_hz(p, omega_rad_s),
-            within: Limits::both(1e-2),
-        },
-        Criterion::IntervalVariation { most: 3e-2 },
-    ];
-    if subject.convention != Convention::Frozen {
-        // At most 2·f_max cycles of two events each.
-        criteria.push(Criterion::EventsPerSecond {
-            most: 4.0 * most_hz(p),
-        });
-    }
-    Trial {
-        settings,
-        input,
-        criteria,
-    }
-}
-
-pub(super) fn quantised_velocity() -> Case {
+    },
     Case {
         id: "H26",
         name: "quantised-velocity",
@@ -125,10 +124,7 @@ pub(super) fn quantised_velocity() -> Case {
             }
             trials
         },
-    }
-}
-
-pub(super) fn jitter_and_loss() -> Case {
+    },
     Case {
         id: "H27",
         name: "jitter-and-loss",
@@ -160,10 +156,7 @@ pub(super) fn jitter_and_loss() -> Case {
             }
             trials
         },
-    }
-}
-
-pub(super) fn hand() -> Case {
+    },
     Case {
         id: "H34",
         name: "sampled-spring",
@@ -199,5 +192,5 @@ pub(super) fn hand() -> Case {
                 })
                 .to_vec()
         },
-    }
-}
+    },
+];

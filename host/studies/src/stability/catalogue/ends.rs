@@ -24,7 +24,19 @@ const ROWS: &[(f64, f64)] = &[
     (1.0, 0.0),
 ];
 
-pub(super) fn motion_ends_with_the_run() -> Case {
+// Sliding at 0.3 rad/s, the damped object comes to rest within five seconds,
+// also in f64; then the shaft stops, rests and continues.
+const STOPS: &[(f64, f64, f64)] = &[
+    (0.0, 0.3, 0.3),
+    (5.0, 0.3, 0.3),
+    (5.5, 0.0, 0.0),
+    (6.0, 0.0, 0.0),
+    (6.02, 0.02, 0.02),
+    (6.1, 0.02, 0.02),
+];
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H48",
         name: "motion-ends-with-the-run",
@@ -82,20 +94,7 @@ pub(super) fn motion_ends_with_the_run() -> Case {
             }
             trials
         },
-    }
-}
-
-pub(super) fn dead_object() -> Case {
-    // Sliding at 0.3 rad/s, the damped object comes to rest within five seconds,
-    // also in f64; then the shaft stops, rests and continues.
-    const STOPS: &[(f64, f64, f64)] = &[
-        (0.0, 0.3, 0.3),
-        (5.0, 0.3, 0.3),
-        (5.5, 0.0, 0.0),
-        (6.0, 0.0, 0.0),
-        (6.02, 0.02, 0.02),
-        (6.1, 0.02, 0.02),
-    ];
+    },
     Case {
         id: "H49",
         name: "dead-object",
@@ -143,10 +142,7 @@ pub(super) fn dead_object() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn event_cap() -> Case {
+    },
     Case {
         id: "H50",
         name: "event-cap",
@@ -165,10 +161,7 @@ pub(super) fn event_cap() -> Case {
                 })
                 .to_vec()
         },
-    }
-}
-
-pub(super) fn from_kinetic() -> Case {
+    },
     Case {
         id: "H51",
         name: "from-kinetic",
@@ -214,5 +207,5 @@ pub(super) fn from_kinetic() -> Case {
                 })
                 .to_vec()
         },
-    }
-}
+    },
+];

@@ -7,7 +7,39 @@ use crate::stability::input::{Input, Shaft};
 use crate::stability::subject::Subject;
 use crepitus_model::{Convention, Real};
 
-pub(super) fn stiff() -> Case {
+fn storm_trials(
+    subject: Subject,
+    seeds: std::ops::RangeInclusive<u64>,
+    duration_s: f64,
+) -> Vec<Trial> {
+    seeds
+        .map(|seed| {
+            let input = Input::White {
+                most_rad_s: 50.0,
+                seed,
+                duration_s,
+                step_s: TICK_S,
+            };
+            let criteria = [Criterion::Survives, Criterion::EventsPerStep { most: 8 }];
+            trial(paper_joint(subject.convention), input, criteria)
+        })
+        .collect()
+}
+
+const STORM: Case = Case {
+    id: "H32",
+    name: "storm",
+    title: "White velocity of ±50 rad/s",
+    hard: "A broken sensor looks like this. Accelerations of 2e6 rad/s² and jumps at every fourth step lead \
+           through every branch; the work of a step must stay bounded, and everything finite.",
+    source: "what holds for any motion: |T| ≤ Ts, at most 8 events a step, no NaN",
+    long: false,
+    must: located,
+    trials: |subject| storm_trials(subject, 1..=2, 5.0),
+};
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H13",
         name: "stiff",
@@ -33,10 +65,7 @@ pub(super) fn stiff() -> Case {
                 [breaks],
             )]
         },
-    }
-}
-
-pub(super) fn light() -> Case {
+    },
     Case {
         id: "H14",
         name: "light",
@@ -69,10 +98,7 @@ pub(super) fn light() -> Case {
                 })
                 .to_vec()
         },
-    }
-}
-
-pub(super) fn soft_and_strong() -> Case {
+    },
     Case {
         id: "H15",
         name: "soft-and-strong",
@@ -98,54 +124,16 @@ pub(super) fn soft_and_strong() -> Case {
                 on([0.01, 400.0, 0.0, 0.2, 1e6], 200.0, 13.0, summed),
             ]
         },
-    }
-}
-
-fn storm_trials(
-    subject: Subject,
-    seeds: std::ops::RangeInclusive<u64>,
-    duration_s: f64,
-) -> Vec<Trial> {
-    seeds
-        .map(|seed| {
-            let input = Input::White {
-                most_rad_s: 50.0,
-                seed,
-                duration_s,
-                step_s: TICK_S,
-            };
-            let criteria = [Criterion::Survives, Criterion::EventsPerStep { most: 8 }];
-            trial(paper_joint(subject.convention), input, criteria)
-        })
-        .collect()
-}
-
-pub(super) fn storm() -> Case {
-    Case {
-        id: "H32",
-        name: "storm",
-        title: "White velocity of ±50 rad/s",
-        hard: "A broken sensor looks like this. Accelerations of 2e6 rad/s² and jumps at every fourth step lead \
-               through every branch; the work of a step must stay bounded, and everything finite.",
-        source: "what holds for any motion: |T| ≤ Ts, at most 8 events a step, no NaN",
-        long: false,
-        must: located,
-        trials: |subject| storm_trials(subject, 1..=2, 5.0),
-    }
-}
-
-pub(super) fn storm_long() -> Case {
+    },
+    STORM,
     Case {
         id: "H32L",
         name: "storm-long",
         title: "White velocity for ten million steps",
         long: true,
         trials: |subject| storm_trials(subject, 3..=3, 500.0),
-        ..storm()
-    }
-}
-
-pub(super) fn high_speed() -> Case {
+        ..STORM
+    },
     Case {
         id: "H33",
         name: "high-speed",
@@ -178,5 +166,5 @@ pub(super) fn high_speed() -> Case {
                 })
                 .to_vec()
         },
-    }
-}
+    },
+];

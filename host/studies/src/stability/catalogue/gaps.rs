@@ -7,7 +7,16 @@ use crate::stability::input::{Fault, Input, Lost, Rendered, Shaft, Shake};
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::{Convention, Parameters};
 
-pub(super) fn gap_under_load() -> Case {
+// 0.5 mrad forwards, and 1.5 mrad back before the estimate has turned.
+const BACK: &[(f64, f64, f64)] = &[
+    (0.0, 0.5, 0.5),
+    (0.001, 0.5, -5.0),
+    (0.001_4, -5.0, 0.0),
+    (0.05, 0.0, 0.0),
+];
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H38",
         name: "gap-under-load",
@@ -48,10 +57,7 @@ pub(super) fn gap_under_load() -> Case {
             }
             trials
         },
-    }
-}
-
-pub(super) fn losses_with_the_motion() -> Case {
+    },
     Case {
         id: "H39",
         name: "losses-with-the-motion",
@@ -82,10 +88,7 @@ pub(super) fn losses_with_the_motion() -> Case {
             ];
             vec![trial(paper_joint(subject.convention), input, criteria)]
         },
-    }
-}
-
-pub(super) fn retreat_in_a_gap() -> Case {
+    },
     Case {
         id: "H56",
         name: "retreat-in-a-gap",
@@ -129,10 +132,7 @@ pub(super) fn retreat_in_a_gap() -> Case {
             }
             trials
         },
-    }
-}
-
-pub(super) fn velocity_outliers() -> Case {
+    },
     Case {
         id: "H40",
         name: "velocity-outliers",
@@ -152,10 +152,7 @@ pub(super) fn velocity_outliers() -> Case {
             let input = faulty(Shaft::Constant(1.0), Fault::Jumps { every: 7 }, 2.0);
             vec![trial(settings, input, [rate])]
         },
-    }
-}
-
-pub(super) fn encoder_bursts() -> Case {
+    },
     Case {
         id: "H41",
         name: "encoder-bursts",
@@ -189,17 +186,7 @@ pub(super) fn encoder_bursts() -> Case {
                 })
                 .to_vec()
         },
-    }
-}
-
-pub(super) fn late_estimate() -> Case {
-    // 0.5 mrad forwards, and 1.5 mrad back before the estimate has turned.
-    const BACK: &[(f64, f64, f64)] = &[
-        (0.0, 0.5, 0.5),
-        (0.001, 0.5, -5.0),
-        (0.001_4, -5.0, 0.0),
-        (0.05, 0.0, 0.0),
-    ];
+    },
     Case {
         id: "H42",
         name: "late-estimate",
@@ -227,5 +214,5 @@ pub(super) fn late_estimate() -> Case {
             };
             vec![trial(settings, input, [slip, exactly(Counted::Events, 2)])]
         },
-    }
-}
+    },
+];

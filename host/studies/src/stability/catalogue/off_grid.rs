@@ -65,7 +65,12 @@ fn torn(effects: &str) -> String {
     format!("{TORN}{effects}")
 }
 
-pub(super) fn jump_within_a_step() -> Case {
+fn trembles(subject: Subject) -> bool {
+    subject.convention == Convention::Frozen && matches!(subject.solver, Rung::Ladder(_))
+}
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H89",
         name: "jump-off-grid",
@@ -121,10 +126,7 @@ pub(super) fn jump_within_a_step() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn two_limits_in_a_tick() -> Case {
+    },
     Case {
         id: "H90",
         name: "two-limits",
@@ -167,10 +169,7 @@ pub(super) fn two_limits_in_a_tick() -> Case {
                 ],
             )]
         },
-    }
-}
-
-pub(super) fn clock_against_a_pause() -> Case {
+    },
     Case {
         id: "H91",
         name: "clock-in-a-pause",
@@ -232,10 +231,7 @@ pub(super) fn clock_against_a_pause() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn armed_beyond() -> Case {
+    },
     Case {
         id: "H92",
         name: "armed-beyond",
@@ -298,10 +294,7 @@ pub(super) fn armed_beyond() -> Case {
             })
             .to_vec()
         },
-    }
-}
-
-pub(super) fn longer_than_a_pitch() -> Case {
+    },
     Case {
         id: "H93",
         name: "longer-than-a-pitch",
@@ -329,10 +322,7 @@ pub(super) fn longer_than_a_pitch() -> Case {
             };
             vec![scene_trial(run, [torque(0.0, -0.6, 0.6, 1e-6)])]
         },
-    }
-}
-
-pub(super) fn irregular_delay() -> Case {
+    },
     Case {
         id: "H94",
         name: "delay-varies",
@@ -364,14 +354,7 @@ pub(super) fn irregular_delay() -> Case {
             }
             trials
         },
-    }
-}
-
-fn trembles(subject: Subject) -> bool {
-    subject.convention == Convention::Frozen && matches!(subject.solver, Rung::Ladder(_))
-}
-
-pub(super) fn tremble_in_the_gap() -> Case {
+    },
     Case {
         id: "H95",
         name: "tremble-in-the-gap",
@@ -399,5 +382,5 @@ pub(super) fn tremble_in_the_gap() -> Case {
             };
             vec![scene_trial(run, [torque(0.0, -0.4, 0.4, 4e-6)])]
         },
-    }
-}
+    },
+];

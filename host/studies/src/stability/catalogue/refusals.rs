@@ -6,7 +6,8 @@ use crate::stability::criterion::Criterion;
 use crate::stability::input::{Attempt, Input};
 use crepitus_model::Settings;
 
-pub(super) fn steps() -> Case {
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H20",
         name: "bad-steps",
@@ -37,10 +38,7 @@ pub(super) fn steps() -> Case {
                 [Criterion::Refused],
             )]
         },
-    }
-}
-
-pub(super) fn parameters() -> Case {
+    },
     Case {
         id: "H22",
         name: "bad-parameters",
@@ -79,5 +77,5 @@ pub(super) fn parameters() -> Case {
                 [Criterion::Refused],
             )]
         },
-    }
-}
+    },
+];

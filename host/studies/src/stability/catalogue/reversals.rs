@@ -17,7 +17,14 @@ const TORQUE: Criterion = Criterion::EventTorques {
     },
 };
 
-pub(super) fn dwell() -> Case {
+const SLOPES: [&[(f64, f64, f64)]; 3] = [
+    &[(0.0, 3.15, 3.15), (0.3, -3.15, -3.15), (0.4, -3.15, -3.15)],
+    &[(0.0, 3.1, 3.1), (0.2, -3.1, -3.1), (0.4, -3.1, -3.1)],
+    &[(0.0, 5.0, 5.0), (0.01, -5.0, -5.0), (0.4, -5.0, -5.0)],
+];
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H04",
         name: "dwell",
@@ -32,10 +39,7 @@ pub(super) fn dwell() -> Case {
             let criteria = [events(LOCATED), Criterion::NoBreakAtRest];
             vec![trial(paper_joint(subject.convention), input, criteria)]
         },
-    }
-}
-
-pub(super) fn reversal_in_stick() -> Case {
+    },
     Case {
         id: "H05",
         name: "reversal-in-stick",
@@ -78,10 +82,7 @@ pub(super) fn reversal_in_stick() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn velocity_jumps() -> Case {
+    },
     Case {
         id: "H06",
         name: "velocity-jumps",
@@ -99,10 +100,7 @@ pub(super) fn velocity_jumps() -> Case {
                 [events(LOCATED), TORQUE],
             )]
         },
-    }
-}
-
-pub(super) fn through_zero() -> Case {
+    },
     Case {
         id: "H07",
         name: "through-zero",
@@ -130,10 +128,7 @@ pub(super) fn through_zero() -> Case {
                 criteria,
             }]
         },
-    }
-}
-
-pub(super) fn fast_swing() -> Case {
+    },
     Case {
         id: "H16",
         name: "fast-swing",
@@ -155,10 +150,7 @@ pub(super) fn fast_swing() -> Case {
                 trial(settings, at_tick(at_speed, 1.0), [events(SAMPLED)]),
             ]
         },
-    }
-}
-
-pub(super) fn sudden_stop() -> Case {
+    },
     Case {
         id: "H17",
         name: "sudden-stop",
@@ -189,15 +181,7 @@ pub(super) fn sudden_stop() -> Case {
             }
             vec![stop]
         },
-    }
-}
-
-pub(super) fn hard_braking() -> Case {
-    const SLOPES: [&[(f64, f64, f64)]; 3] = [
-        &[(0.0, 3.15, 3.15), (0.3, -3.15, -3.15), (0.4, -3.15, -3.15)],
-        &[(0.0, 3.1, 3.1), (0.2, -3.1, -3.1), (0.4, -3.1, -3.1)],
-        &[(0.0, 5.0, 5.0), (0.01, -5.0, -5.0), (0.4, -5.0, -5.0)],
-    ];
+    },
     Case {
         id: "H18",
         name: "hard-braking",
@@ -225,5 +209,5 @@ pub(super) fn hard_braking() -> Case {
                 })
                 .to_vec()
         },
-    }
-}
+    },
+];

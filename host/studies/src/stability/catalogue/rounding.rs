@@ -11,7 +11,29 @@ use crepitus_model::{Convention, Parameters};
 use crepitus_scene::preset::joints;
 use crepitus_scene::scene::Precision;
 
-pub(super) fn free_period() -> Case {
+/// Subjects that check for a match only at the end of a step, after a break
+/// located within it.
+fn interpolates(subject: Subject) -> bool {
+    subject.solver == Rung::Ladder(Solver::ExactInterpolated)
+        && subject.convention != Convention::Frozen
+}
+
+// A stick of `paper` that is held at its limit while the hand brakes, and
+// breaks in the instant in which the true torque reaches Tk.
+const HELD: &[(f64, f64, f64)] = &[
+    (0.0, 5.015_864_687_484_201, 5.015_864_687_484_201),
+    (6e-4, -7.562_768_377_573_861, -7.562_768_377_573_861),
+    (1.2e-3, 0.047_103_171_072_371_33, 0.047_103_171_072_371_33),
+    (1.8e-3, 7.216_582_485_415_388, 7.216_582_485_415_388),
+    (2.4e-3, 0.0, 0.0),
+    (3e-3, -1.468_880_445_545_090_1, -1.468_880_445_545_090_1),
+    (3.6e-3, 0.0, 0.0),
+    (4.2e-3, -2.843_622_718_732_403_2, -2.843_622_718_732_403_2),
+    (4.8e-3, 5.047_445_017_779_298, 5.047_445_017_779_298),
+];
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H52",
         name: "free-period",
@@ -41,10 +63,7 @@ pub(super) fn free_period() -> Case {
                 })
                 .collect()
         },
-    }
-}
-
-pub(super) fn subnormal_decay() -> Case {
+    },
     Case {
         id: "H53",
         name: "subnormal-decay",
@@ -66,17 +85,7 @@ pub(super) fn subnormal_decay() -> Case {
             let settings = joint(subject.convention, [0.01, 400.0, 2.0, 0.2, 0.4]);
             vec![trial(settings, input, [Criterion::Subnormals { most: 0 }])]
         },
-    }
-}
-
-/// Subjects that check for a match only at the end of a step, after a break
-/// located within it.
-fn interpolates(subject: Subject) -> bool {
-    subject.solver == Rung::Ladder(Solver::ExactInterpolated)
-        && subject.convention != Convention::Frozen
-}
-
-pub(super) fn break_at_a_sample() -> Case {
+    },
     Case {
         id: "H54",
         name: "break-at-a-sample",
@@ -105,23 +114,7 @@ pub(super) fn break_at_a_sample() -> Case {
             }
             trials
         },
-    }
-}
-
-pub(super) fn slip_without_lead() -> Case {
-    // A stick of `paper` that is held at its limit while the hand brakes, and
-    // breaks in the instant in which the true torque reaches Tk.
-    const HELD: &[(f64, f64, f64)] = &[
-        (0.0, 5.015_864_687_484_201, 5.015_864_687_484_201),
-        (6e-4, -7.562_768_377_573_861, -7.562_768_377_573_861),
-        (1.2e-3, 0.047_103_171_072_371_33, 0.047_103_171_072_371_33),
-        (1.8e-3, 7.216_582_485_415_388, 7.216_582_485_415_388),
-        (2.4e-3, 0.0, 0.0),
-        (3e-3, -1.468_880_445_545_090_1, -1.468_880_445_545_090_1),
-        (3.6e-3, 0.0, 0.0),
-        (4.2e-3, -2.843_622_718_732_403_2, -2.843_622_718_732_403_2),
-        (4.8e-3, 5.047_445_017_779_298, 5.047_445_017_779_298),
-    ];
+    },
     Case {
         id: "H55",
         name: "slip-without-lead",
@@ -154,5 +147,5 @@ pub(super) fn slip_without_lead() -> Case {
                 })
                 .to_vec()
         },
-    }
-}
+    },
+];

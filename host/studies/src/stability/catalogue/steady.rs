@@ -6,7 +6,45 @@ use crate::stability::criterion::{Counted, Criterion, Limits};
 use crate::stability::input::{Input, Shaft};
 use crate::stability::subject::Subject;
 
-pub(super) fn constant_speed() -> Case {
+/// Rest from the start, and at 0.9·Ts/kr after a careful approach.
+fn rest_trials(subject: Subject, duration_s: f64) -> Vec<Trial> {
+    const APPROACH: &[(f64, f64, f64)] = &[
+        (0.0, 0.0, 0.0),
+        (0.05, 0.018, 0.018),
+        (0.1, 0.0, 0.0),
+        (0.2, 0.0, 0.0),
+    ];
+    [Shaft::Constant(0.0), Shaft::Knots(APPROACH)]
+        .map(|shaft| {
+            let input = Input::Sampled {
+                shaft,
+                duration_s,
+                step_s: 1e-3,
+            };
+            let criteria = [
+                exactly(Counted::Events, 0),
+                // One step later the last acceleration is over, too.
+                Criterion::TorqueStays { from_s: 0.101 },
+            ];
+            trial(paper_joint(subject.convention), input, criteria)
+        })
+        .to_vec()
+}
+
+const REST: Case = Case {
+    id: "H03",
+    name: "rest",
+    title: "A shaft at rest, slack and loaded to 0.9 Ts",
+    hard: "A regularised friction law creeps under load; rounding errors accumulate; a comparison \
+           of two zeros can start a slip.",
+    source: "at rest nothing in eqs. (1) to (11) moves",
+    long: false,
+    must: located,
+    trials: |subject| rest_trials(subject, 100.0),
+};
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H01",
         name: "constant-speed",
@@ -34,10 +72,7 @@ pub(super) fn constant_speed() -> Case {
             };
             speeds.map(run).to_vec()
         },
-    }
-}
-
-pub(super) fn mirror() -> Case {
+    },
     Case {
         id: "H02",
         name: "mirror",
@@ -63,60 +98,16 @@ pub(super) fn mirror() -> Case {
             };
             pairs.map(run).to_vec()
         },
-    }
-}
-
-/// Rest from the start, and at 0.9·Ts/kr after a careful approach.
-fn rest_trials(subject: Subject, duration_s: f64) -> Vec<Trial> {
-    const APPROACH: &[(f64, f64, f64)] = &[
-        (0.0, 0.0, 0.0),
-        (0.05, 0.018, 0.018),
-        (0.1, 0.0, 0.0),
-        (0.2, 0.0, 0.0),
-    ];
-    [Shaft::Constant(0.0), Shaft::Knots(APPROACH)]
-        .map(|shaft| {
-            let input = Input::Sampled {
-                shaft,
-                duration_s,
-                step_s: 1e-3,
-            };
-            let criteria = [
-                exactly(Counted::Events, 0),
-                // One step later the last acceleration is over, too.
-                Criterion::TorqueStays { from_s: 0.101 },
-            ];
-            trial(paper_joint(subject.convention), input, criteria)
-        })
-        .to_vec()
-}
-
-pub(super) fn rest() -> Case {
-    Case {
-        id: "H03",
-        name: "rest",
-        title: "A shaft at rest, slack and loaded to 0.9 Ts",
-        hard: "A regularised friction law creeps under load; rounding errors accumulate; a comparison \
-               of two zeros can start a slip.",
-        source: "at rest nothing in eqs. (1) to (11) moves",
-        long: false,
-        must: located,
-        trials: |subject| rest_trials(subject, 100.0),
-    }
-}
-
-pub(super) fn rest_long() -> Case {
+    },
+    REST,
     Case {
         id: "H03L",
         name: "rest-24h",
         title: "A shaft at rest for 24 hours",
         long: true,
         trials: |subject| rest_trials(subject, 86_400.0),
-        ..rest()
-    }
-}
-
-pub(super) fn equal_torques() -> Case {
+        ..REST
+    },
     Case {
         id: "H08",
         name: "equal-torques",
@@ -144,10 +135,7 @@ pub(super) fn equal_torques() -> Case {
                 criteria,
             )]
         },
-    }
-}
-
-pub(super) fn nearly_equal_torques() -> Case {
+    },
     Case {
         id: "H09",
         name: "nearly-equal-torques",
@@ -174,10 +162,7 @@ pub(super) fn nearly_equal_torques() -> Case {
                 criteria,
             )]
         },
-    }
-}
-
-pub(super) fn no_kinetic_friction() -> Case {
+    },
     Case {
         id: "H10",
         name: "no-kinetic-friction",
@@ -200,5 +185,5 @@ pub(super) fn no_kinetic_friction() -> Case {
                 criteria,
             )]
         },
-    }
-}
+    },
+];

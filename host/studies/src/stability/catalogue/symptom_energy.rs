@@ -44,7 +44,8 @@ pub(super) fn springs() -> [Given; 6] {
     ]
 }
 
-pub(super) fn returned_by_springs() -> Case {
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H72",
         name: "play-energy",
@@ -78,10 +79,7 @@ pub(super) fn returned_by_springs() -> Case {
             }
             trials
         },
-    }
-}
-
-pub(super) fn returned_by_muscles() -> Case {
+    },
     Case {
         id: "H73",
         name: "tank",
@@ -138,10 +136,7 @@ pub(super) fn returned_by_muscles() -> Case {
             }
             trials
         },
-    }
-}
-
-pub(super) fn refused() -> Case {
+    },
     Case {
         id: "H74",
         name: "bad-symptoms",
@@ -231,5 +226,5 @@ pub(super) fn refused() -> Case {
                 criteria: vec![Criterion::Refused],
             }]
         },
-    }
-}
+    },
+];

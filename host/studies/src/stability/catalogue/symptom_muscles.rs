@@ -16,7 +16,8 @@ fn catch() -> Given {
     Given::new("spasticity", &[], &[("form", "catch")])
 }
 
-pub(super) fn dither_at_the_threshold() -> Case {
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H67",
         name: "catch-dither",
@@ -50,10 +51,7 @@ pub(super) fn dither_at_the_threshold() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn last_condition() -> Case {
+    },
     Case {
         id: "H68",
         name: "catch-order",
@@ -95,10 +93,7 @@ pub(super) fn last_condition() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn late_in_counts() -> Case {
+    },
     Case {
         id: "H69",
         name: "catch-counts",
@@ -132,10 +127,7 @@ pub(super) fn late_in_counts() -> Case {
                 })
                 .to_vec()
         },
-    }
-}
-
-pub(super) fn turned_back() -> Case {
+    },
     Case {
         id: "H70",
         name: "blade-turned-back",
@@ -193,10 +185,7 @@ pub(super) fn turned_back() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn clonus() -> Case {
+    },
     Case {
         id: "H71",
         name: "clonus-passed",
@@ -251,5 +240,5 @@ pub(super) fn clonus() -> Case {
                 ),
             ]
         },
-    }
-}
+    },
+];

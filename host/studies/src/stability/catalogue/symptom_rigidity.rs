@@ -8,7 +8,8 @@ use crate::stability::criterion::Criterion;
 use crate::symptoms::{Given, Hand};
 use crepitus_model::render::effects::symptom::Word;
 
-pub(super) fn touched_limit() -> Case {
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H62",
         name: "rigidity-turns",
@@ -51,10 +52,7 @@ pub(super) fn touched_limit() -> Case {
                 trial(under(&given, rest, 1.2), [torques, stays]),
             ]
         },
-    }
-}
-
-pub(super) fn cogwheel_at_rest() -> Case {
+    },
     Case {
         id: "H63",
         name: "cogwheel-rest",
@@ -88,10 +86,7 @@ pub(super) fn cogwheel_at_rest() -> Case {
                 trial(under(&given, on, 0.9), as_the_reference()),
             ]
         },
-    }
-}
-
-pub(super) fn cogwheel_reversal() -> Case {
+    },
     Case {
         id: "H64",
         name: "cogwheel-turns",
@@ -153,10 +148,7 @@ pub(super) fn cogwheel_reversal() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn texture() -> Case {
+    },
     Case {
         id: "H65",
         name: "texture-tremble",
@@ -217,10 +209,7 @@ pub(super) fn texture() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn asperities_there_and_back() -> Case {
+    },
     Case {
         id: "H66",
         name: "texture-back",
@@ -242,5 +231,5 @@ pub(super) fn asperities_there_and_back() -> Case {
             };
             vec![trial(under(&given, wander, 3.0), as_the_reference())]
         },
-    }
-}
+    },
+];

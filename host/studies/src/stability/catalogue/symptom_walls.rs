@@ -49,7 +49,33 @@ fn flicker(at_deg: f64) -> Hand {
     }
 }
 
-pub(super) fn rest_on_a_wall() -> Case {
+/// A rotor without a leg that is pressed into a flexion limit. What presses is a string so soft that it does not notice the
+/// wall.
+fn pressed() -> SceneRun {
+    SceneRun {
+        what: "a rotor with 0.1 N·m of friction, pressed by 2 N·m into an end of 300 N·m/rad with a loss of 0.25, \
+               with encoder, tick and current loop between them",
+        text: "device = true\n\
+               [motion]\nkind = \"velocity-knots\"\nfrom_deg = 89.0\nknots = [\n\
+               { t_s = 0.0, omega_rad_s = 0.0 },\n\
+               { t_s = 0.05, omega_rad_s = 2000.0 },\n\
+               { t_s = 0.1, omega_rad_s = 0.0 }]\n\
+               [effects.range-limit]\nextension_limit_deg = 0.0\nflexion_limit_deg = 90.0\n\
+               flexion_stiffness_nm_per_rad = 300.0\nflexion_stiffening_nm_per_rad2 = 0.0\nflexion_loss = 0.25\n\
+               [effects.encoder]\n[effects.motor]\n\
+               [effects.drivetrain]\nfriction_nm = 0.1\nload_loss = 0.0\n\
+               [effects.hand]\nmass_kg = 1e-3\ndamping_ns_per_m = 0.0\n\
+               stiffness_n_per_m = 0.02\nlever_m = 1.0\n"
+            .to_owned(),
+        column: "range_limit_nm",
+        is_compared: false,
+        duration_s: 2.0,
+        step_s: TICK_S,
+    }
+}
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H57",
         name: "wall-rest",
@@ -84,10 +110,7 @@ pub(super) fn rest_on_a_wall() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn graze() -> Case {
+    },
     Case {
         id: "H58",
         name: "wall-graze",
@@ -128,10 +151,7 @@ pub(super) fn graze() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn moved_wall() -> Case {
+    },
     Case {
         id: "H59",
         name: "wall-moved",
@@ -185,10 +205,7 @@ pub(super) fn moved_wall() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn stiffness_in_contact() -> Case {
+    },
     Case {
         id: "H60",
         name: "wall-stiffness",
@@ -232,10 +249,7 @@ pub(super) fn stiffness_in_contact() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn both_limits() -> Case {
+    },
     Case {
         id: "H61",
         name: "both-walls",
@@ -277,10 +291,7 @@ pub(super) fn both_limits() -> Case {
                 ),
             ]
         },
-    }
-}
-
-pub(super) fn pressed_rotor() -> Case {
+    },
     Case {
         id: "H75",
         name: "wall-pressed",
@@ -311,30 +322,5 @@ pub(super) fn pressed_rotor() -> Case {
                 ],
             }]
         },
-    }
-}
-
-/// A rotor without a leg that is pressed into a flexion limit. What presses is a string so soft that it does not notice the
-/// wall.
-fn pressed() -> SceneRun {
-    SceneRun {
-        what: "a rotor with 0.1 N·m of friction, pressed by 2 N·m into an end of 300 N·m/rad with a loss of 0.25, \
-               with encoder, tick and current loop between them",
-        text: "device = true\n\
-               [motion]\nkind = \"velocity-knots\"\nfrom_deg = 89.0\nknots = [\n\
-               { t_s = 0.0, omega_rad_s = 0.0 },\n\
-               { t_s = 0.05, omega_rad_s = 2000.0 },\n\
-               { t_s = 0.1, omega_rad_s = 0.0 }]\n\
-               [effects.range-limit]\nextension_limit_deg = 0.0\nflexion_limit_deg = 90.0\n\
-               flexion_stiffness_nm_per_rad = 300.0\nflexion_stiffening_nm_per_rad2 = 0.0\nflexion_loss = 0.25\n\
-               [effects.encoder]\n[effects.motor]\n\
-               [effects.drivetrain]\nfriction_nm = 0.1\nload_loss = 0.0\n\
-               [effects.hand]\nmass_kg = 1e-3\ndamping_ns_per_m = 0.0\n\
-               stiffness_n_per_m = 0.02\nlever_m = 1.0\n"
-            .to_owned(),
-        column: "range_limit_nm",
-        is_compared: false,
-        duration_s: 2.0,
-        step_s: TICK_S,
-    }
-}
+    },
+];

@@ -17,7 +17,38 @@ fn rate(omega_rad_s: f64, within: Limits) -> Criterion {
     }
 }
 
-pub(super) fn step_length() -> Case {
+fn a_day_trial(subject: Subject, duration_s: f64) -> Vec<Trial> {
+    let input = Input::Repeated {
+        omega_rad_s: 1.0,
+        duration_s,
+        step_s: TICK_S,
+    };
+    let criteria = [
+        rate(1.0, Limits::both(1e-5)),
+        Criterion::TorqueWithin {
+            from_s: 0.0,
+            low_nm: 0.0,
+            high_nm: 0.4,
+            slack_nm: 1e-5,
+        },
+    ];
+    vec![trial(paper_joint(subject.convention), input, criteria)]
+}
+
+const A_DAY_SHORT: Case = Case {
+    id: "H23",
+    name: "endurance",
+    title: "100 seconds at the device's tick",
+    hard: "Two million steps: a frequency error of 1e-5, a fortieth of a cent, can come from rounding of the slip's \
+           duration alone, and any drift of the torque's band accumulates.",
+    source: "closed form of the cycle; a tick of f32 keeps 1e-7 of its fraction",
+    long: false,
+    must: located,
+    trials: |subject| a_day_trial(subject, 100.0),
+};
+
+/// The cases of this theme.
+pub(super) const CASES: &[Case] = &[
     Case {
         id: "H19",
         name: "step-length",
@@ -48,42 +79,8 @@ pub(super) fn step_length() -> Case {
                 })
                 .to_vec()
         },
-    }
-}
-
-fn a_day_trial(subject: Subject, duration_s: f64) -> Vec<Trial> {
-    let input = Input::Repeated {
-        omega_rad_s: 1.0,
-        duration_s,
-        step_s: TICK_S,
-    };
-    let criteria = [
-        rate(1.0, Limits::both(1e-5)),
-        Criterion::TorqueWithin {
-            from_s: 0.0,
-            low_nm: 0.0,
-            high_nm: 0.4,
-            slack_nm: 1e-5,
-        },
-    ];
-    vec![trial(paper_joint(subject.convention), input, criteria)]
-}
-
-pub(super) fn a_day_short() -> Case {
-    Case {
-        id: "H23",
-        name: "endurance",
-        title: "100 seconds at the device's tick",
-        hard: "Two million steps: a frequency error of 1e-5, a fortieth of a cent, can come from rounding of the slip's \
-               duration alone, and any drift of the torque's band accumulates.",
-        source: "closed form of the cycle; a tick of f32 keeps 1e-7 of its fraction",
-        long: false,
-        must: located,
-        trials: |subject| a_day_trial(subject, 100.0),
-    }
-}
-
-pub(super) fn a_day() -> Case {
+    },
+    A_DAY_SHORT,
     Case {
         id: "H23L",
         name: "endurance-24h",
@@ -93,11 +90,8 @@ pub(super) fn a_day() -> Case {
             Precision::F32 => a_day_trial(subject, 86_400.0),
             Precision::F64 => Vec::new(),
         },
-        ..a_day_short()
-    }
-}
-
-pub(super) fn no_clock() -> Case {
+        ..A_DAY_SHORT
+    },
     Case {
         id: "H24",
         name: "no-clock",
@@ -126,5 +120,5 @@ pub(super) fn no_clock() -> Case {
             ];
             vec![trial(paper_joint(subject.convention), input, criteria)]
         },
-    }
-}
+    },
+];

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::render::effects::tests::{TIMING, missing, seen};
+use crate::render::effects::{Adds, Switched};
 use std::vec::Vec;
 
 const TICK_S: f64 = 5e-5;

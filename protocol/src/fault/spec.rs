@@ -1,0 +1,44 @@
+//! Description of a fault: the columns of the table.
+
+use super::Fault;
+
+/// Controller that detects a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Detector {
+    /// The drive controller.
+    Drive,
+    /// The comms controller.
+    Comms,
+}
+
+impl Detector {
+    /// Name for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Drive => "drive",
+            Self::Comms => "comms",
+        }
+    }
+}
+
+/// Description of a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FaultSpec {
+    /// The fault.
+    pub fault: Fault,
+    /// Name.
+    pub name: &'static str,
+    /// Cause.
+    pub cause: &'static str,
+    /// Controller that detects it.
+    pub detector: Detector,
+    /// Detection criterion.
+    pub detection: &'static str,
+    /// Reaction.
+    pub reaction: &'static str,
+    /// Ticks of the drive (50 µs) from the cause until the bridge floats; `None`
+    /// if it floats already.
+    pub within_ticks: Option<u32>,
+    /// Remedy.
+    pub clear: &'static str,
+}

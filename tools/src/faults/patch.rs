@@ -1,0 +1,419 @@
+//! Faults as they are listed: a patch file each, `tools/faults/<area>/<name>.patch`.
+//!
+//! ```text
+//! What: a slip pushes the leg instead of opposing it
+//! Noticed-by: -p crepitus-model --test energy -- nor_does_any_other_hand
+//!
+//! --- a/model/src/solver/frozen.rs
+//! +++ b/model/src/solver/frozen.rs
+//! @@ -400,7 +400,7 @@
+//! ```
+//!
+//! | line of the header | what it holds |
+//! |---|---|
+//! | `What` | what is wrong |
+//! | `Noticed-by` | arguments of `cargo test` for the test that must fail |
+//! | `Unseen` | the reason why no test can notice it |
+//! | `Program` | `drive` or `comms`, whose image is built with the fault for the test to run |
+//! | `Image` | bytes of that image, and what replaces them: `8? f3 12 88 -> af f3 00 80` |
+//! | `# …` | a comment |
+//!
+//! An empty line ends the header. A unified diff follows, as `git diff` writes it. Numbers of
+//! lines may be old, the lines themselves may not: those of each hunk stand in the file once.
+
+use crate::faults::image_edit::ImageEdit;
+use crate::faults::tree;
+use diffy::patch_set::{FileOperation, ParseOptions, PatchSet};
+use diffy::{Hunk, Line};
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Folder of the patches, from the root of the repository.
+pub const FOLDER: &str = "tools/faults";
+
+/// Lines of a header.
+const KEYS: [&str; 5] = ["What", "Noticed-by", "Unseen", "Program", "Image"];
+
+/// A program of the firmware.
+#[derive(Clone, Copy, Debug, Hash, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Program {
+    /// Program of the drive.
+    Drive,
+    /// Program of comms.
+    Comms,
+}
+
+impl Program {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Drive, Self::Comms];
+
+    /// Name of its image.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Drive => "drive",
+            Self::Comms => "comms",
+        }
+    }
+
+    fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|program| program.name() == name)
+    }
+}
+
+/// A fault.
+#[derive(Clone, Debug, Hash)]
+pub struct Fault {
+    /// Patch file, from the root of the repository.
+    pub file: PathBuf,
+    /// Name of the folder that the patch is in.
+    pub area: String,
+    /// Name on the command line.
+    pub name: String,
+    /// Description of the fault, in one line.
+    pub what: String,
+    /// Arguments of `cargo test` for the test that must fail.
+    pub noticed_by: Option<String>,
+    /// Reason why no test can notice it, if none can.
+    pub unseen: Option<String>,
+    /// Program whose image is built with the fault, if the test runs images.
+    pub program: Option<Program>,
+    /// Edit of that image.
+    pub image: Option<ImageEdit>,
+    /// Changes of the sources; may be empty.
+    diff: String,
+}
+
+/// Text of a file before and after a fault.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Change {
+    /// Text as it is.
+    pub was: String,
+    /// Text with the fault.
+    pub now: String,
+}
+
+/// Reason why a patch cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum PatchError {
+    /// A patch cannot be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// The file or folder.
+        path: PathBuf,
+        /// The cause.
+        source: io::Error,
+    },
+    /// The file is no patch, or not one of these sources.
+    #[error("{}: {what}", path.display())]
+    Form {
+        /// The patch.
+        path: PathBuf,
+        /// Description of the error.
+        what: String,
+    },
+    /// The lines of a hunk do not stand in the file exactly once.
+    #[error(
+        "{}: the lines of hunk {hunk} stand {found} times in {file}, expected once; the source has changed, so make the \
+         diff again: plant the fault in {file}, replace the diff by that of `git diff`, and restore the file",
+        path.display()
+    )]
+    Place {
+        /// The patch.
+        path: PathBuf,
+        /// The file that it changes.
+        file: String,
+        /// Number of the hunk in that file, from 1.
+        hunk: usize,
+        /// Number of places.
+        found: usize,
+    },
+}
+
+/// All faults, by area and name.
+///
+/// # Errors
+/// [`PatchError`] if one cannot be read.
+pub fn all(root: &Path) -> Result<Vec<Fault>, PatchError> {
+    let read = |path: PathBuf| move |source| PatchError::Read { path, source };
+    let folder = root.join(FOLDER);
+    let files = tree::files(&folder).map_err(read(folder))?;
+    files
+        .iter()
+        .filter(|file| file.extension().is_some_and(|e| e == "patch"))
+        .map(|file| {
+            let file = Path::new(FOLDER).join(file);
+            let path = root.join(&file);
+            let text = fs::read_to_string(&path).map_err(read(path))?;
+            Fault::parse(&file, &text)
+        })
+        .collect()
+}
+
+impl Fault {
+    /// Fault of a patch file, whose path is from the root of the repository.
+    ///
+    /// # Errors
+    /// [`PatchError::Form`] if it is none.
+    pub fn parse(file: &Path, text: &str) -> Result<Self, PatchError> {
+        let (head, diff) = text.split_once("\n\n").unwrap_or((text, ""));
+        let mut header = BTreeMap::new();
+        for line in head.lines().filter(|line| !line.starts_with('#')) {
+            let (key, value) = line.split_once(": ").unwrap_or((line, ""));
+            let is_known = KEYS.contains(&key) && !value.trim().is_empty();
+            if !is_known || header.insert(key, value.trim().to_owned()).is_some() {
+                let keys = KEYS.join(", ");
+                let what = format!("`{line}` is no line of a header, or the second one: {keys}");
+                return Err(form(file, what));
+            }
+        }
+        let program = (header.remove("Program"))
+            .map(|name| Program::named(&name).ok_or(name))
+            .transpose()
+            .map_err(|name| form(file, format!("`{name}` is no program: drive or comms")))?;
+        let image = (header.remove("Image"))
+            .map(|edit| ImageEdit::parse(&edit).ok_or(edit))
+            .transpose()
+            .map_err(|edit| form(file, format!("`{edit}` is not like `8? f3 -> af f3`")))?;
+        let fault = Self {
+            file: file.to_owned(),
+            area: text_of(file.parent().and_then(Path::file_name)),
+            name: text_of(file.file_stem()),
+            what: header.remove("What").unwrap_or_default(),
+            noticed_by: header.remove("Noticed-by"),
+            unseen: header.remove("Unseen"),
+            program,
+            image,
+            diff: diff.to_owned(),
+        };
+        for (is_wrong, what) in [
+            (fault.what.is_empty(), "it has no `What`"),
+            (
+                fault.noticed_by.is_none() && fault.unseen.is_none(),
+                "it has neither `Noticed-by` nor `Unseen`",
+            ),
+            (
+                fault.image.is_some() && fault.program.is_none(),
+                "it has `Image`, and no `Program`",
+            ),
+            (
+                fault.image.is_none() && diff.is_empty(),
+                "it changes nothing: an empty line and a diff follow the header",
+            ),
+        ] {
+            if is_wrong {
+                return Err(form(file, what));
+            }
+        }
+        Ok(fault)
+    }
+
+    /// Files that it changes, from the root of the repository.
+    pub fn changed_files(&self) -> impl Iterator<Item = &str> {
+        let lines = self.diff.lines();
+        lines.filter_map(|line| line.strip_prefix("--- a/"))
+    }
+
+    /// Files that it changes in `root`, with their texts.
+    ///
+    /// # Errors
+    /// [`PatchError`] if it does not apply.
+    pub fn apply(&self, root: &Path) -> Result<BTreeMap<PathBuf, Change>, PatchError> {
+        let mut changes = BTreeMap::new();
+        if self.diff.is_empty() {
+            return Ok(changes);
+        }
+        let mut hunks = 0;
+        for part in PatchSet::parse(&self.diff, ParseOptions::unidiff()) {
+            let part = part.map_err(|error| form(&self.file, error.to_string()))?;
+            let (FileOperation::Modify { original, modified }, Some(patch)) =
+                (part.operation().strip_prefix(1), part.patch().as_text())
+            else {
+                return Err(form(&self.file, "it adds, deletes or renames a file"));
+            };
+            let file = original.into_owned();
+            if file != modified {
+                return Err(form(&self.file, format!("it renames {file}")));
+            }
+            if changes.contains_key(Path::new(&file)) {
+                return Err(form(&self.file, format!("{file} is in its diff twice")));
+            }
+            let was = fs::read_to_string(root.join(&file)).map_err(|error| {
+                let what = format!("{file}: {error}; name the file as it is called now");
+                form(&self.file, what)
+            })?;
+            for (hunk, lines) in (1..).zip(patch.hunks()) {
+                let found = places(&was, lines);
+                if found != 1 {
+                    return Err(PatchError::Place {
+                        path: self.file.clone(),
+                        file,
+                        hunk,
+                        found,
+                    });
+                }
+                hunks += 1;
+            }
+            let now = diffy::apply(&was, patch)
+                .map_err(|error| form(&self.file, format!("{file}: {error}")))?;
+            if now == was {
+                return Err(form(&self.file, format!("it changes nothing in {file}")));
+            }
+            changes.insert(PathBuf::from(file), Change { was, now });
+        }
+        // Lines behind a hunk that are not in it are passed over.
+        let begun = self.diff.lines().filter(|line| line.starts_with("@@ "));
+        if begun.count() != hunks {
+            let what = "a hunk has another number of lines than its `@@` says";
+            return Err(form(&self.file, what));
+        }
+        Ok(changes)
+    }
+
+    /// Edits an image, if the fault does that.
+    ///
+    /// # Errors
+    /// [`PatchError::Form`] if its bytes are not there.
+    pub fn edit_image(&self, image: &mut [u8]) -> Result<(), PatchError> {
+        match &self.image {
+            Some(edit) if edit.apply(image) == 0 => Err(form(
+                &self.file,
+                "the bytes of `Image` are not in the image",
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// A number that changes with the sources and with the fault.
+    pub fn fingerprint(&self, sources: u64) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        (sources, self).hash(&mut hasher);
+        hasher.finish()
+    }
+}
+
+fn form(path: &Path, what: impl Into<String>) -> PatchError {
+    PatchError::Form {
+        path: path.to_owned(),
+        what: what.into(),
+    }
+}
+
+fn text_of(part: Option<&OsStr>) -> String {
+    part.unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// Number of places in a source where the lines stand that a hunk keeps or deletes.
+fn places(source: &str, hunk: &Hunk<'_, str>) -> usize {
+    let expected: Vec<&str> = (hunk.lines().iter())
+        .filter_map(|line| match line {
+            Line::Context(text) | Line::Delete(text) => Some(*text),
+            Line::Insert(_) => None,
+        })
+        .collect();
+    let lines: Vec<&str> = source.split_inclusive('\n').collect();
+    // A window of no lines is an error.
+    let windows = lines.windows(expected.len().max(1));
+    windows.filter(|window| *window == expected).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEADER: &str = "What: two is missing\n# A comment.\nNoticed-by: -p small --lib -- two\n";
+
+    const DIFF: &str = "
+diff --git a/small/a.rs b/small/a.rs
+index 123..456 100644
+--- a/small/a.rs
++++ b/small/a.rs
+@@ -1,3 +1,2 @@
+ one
+
+-two
+--- a/small/b.rs
++++ b/small/b.rs
+@@ -1 +1,2 @@ fn b()
+ b
++c
+";
+
+    fn parse(text: &str) -> Result<Fault, PatchError> {
+        Fault::parse(Path::new("tools/faults/small/two.patch"), text)
+    }
+
+    fn with_sources(a: &str) -> tempfile::TempDir {
+        let root = tempfile::tempdir().unwrap();
+        fs::create_dir(root.path().join("small")).unwrap();
+        fs::write(root.path().join("small/a.rs"), a).unwrap();
+        fs::write(root.path().join("small/b.rs"), "b\n").unwrap();
+        root
+    }
+
+    #[test]
+    fn a_patch_changes_files_where_its_lines_stand_once() {
+        let fault = parse(&(HEADER.to_owned() + DIFF)).unwrap();
+        assert_eq!((fault.area.as_str(), fault.name.as_str()), ("small", "two"));
+        assert_eq!(fault.noticed_by.as_deref(), Some("-p small --lib -- two"));
+        let files: Vec<&str> = fault.changed_files().collect();
+        assert_eq!(files, ["small/a.rs", "small/b.rs"]);
+        // The second one has other numbers of lines.
+        for (was, now) in [
+            ("one\n\ntwo\nthree\n", "one\n\nthree\n"),
+            ("zero\n0\none\n\ntwo\n", "zero\n0\none\n\n"),
+        ] {
+            let root = with_sources(was);
+            let changes = fault.apply(root.path()).unwrap();
+            let change = &changes[Path::new("small/a.rs")];
+            assert_eq!((change.was.as_str(), change.now.as_str()), (was, now));
+            assert_eq!(changes[Path::new("small/b.rs")].now, "b\nc\n");
+        }
+        for (source, times) in [("one\n\n2\n", 0), ("one\n\ntwo\none\n\ntwo\n", 2)] {
+            let root = with_sources(source);
+            let error = fault.apply(root.path()).unwrap_err();
+            assert!(matches!(error, PatchError::Place { found, hunk: 1, .. } if found == times));
+            let text = error.to_string();
+            for name in ["two.patch", "small/a.rs"] {
+                assert!(text.contains(name), "{text}");
+            }
+        }
+        let error = fault.apply(Path::new("/nowhere")).unwrap_err();
+        assert!(error.to_string().contains("small/a.rs"), "{error}");
+    }
+
+    #[test]
+    fn lines_that_are_no_part_of_a_hunk_are_an_error() {
+        let root = with_sources("one\n\ntwo\nthree\n");
+        let lost = " two\n@@ -4 +4 @@\n-three\n+3\n";
+        let diff = "\n--- a/small/a.rs\n+++ b/small/a.rs\n@@ -1 +1 @@\n-one\n+1\n";
+        let fault = parse(&format!("{HEADER}{diff}{lost}")).unwrap();
+        assert!(fault.apply(root.path()).is_err());
+    }
+
+    #[test]
+    fn a_header_that_lacks_something_is_an_error() {
+        for header in [
+            "Noticed-by: -p small\n",
+            "What: nothing notices it\n",
+            "What: a\nWhat: b\nUnseen: c\n",
+            "What:\nUnseen: c\n",
+            "What: a\nUnseen: c\nWhy: d\n",
+            "What: a\nUnseen: c\nProgram: panel\n",
+            "What: a\nUnseen: c\nImage: 80 -> 81\n",
+            "What: a\nUnseen: c\nProgram: drive\nImage: 80\n",
+        ] {
+            assert!(parse(&(header.to_owned() + DIFF)).is_err(), "{header}");
+        }
+        assert!(parse("What: a\nUnseen: c\n").is_err(), "no diff");
+        let image = "What: a\nUnseen: c\nProgram: comms\nImage: 80 -> 81\n";
+        let fault = parse(image).unwrap();
+        assert_eq!(fault.program, Some(Program::Comms));
+        assert!(fault.apply(Path::new("/nowhere")).unwrap().is_empty());
+        assert!(fault.edit_image(&mut [0x80]).is_ok());
+        assert!(fault.edit_image(&mut [0x82]).is_err());
+    }
+}
