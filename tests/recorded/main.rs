@@ -158,7 +158,7 @@ fn a_refused_recording_leaves_nothing() {
     );
 }
 
-/// What ends the recording does not end the making of its final file, which looks for a request to
+/// The Ctrl-C that ends the recording does not end the making of its final file, which looks for a request to
 /// stop after each 40,000 rows.
 #[cfg(target_os = "linux")]
 #[test]

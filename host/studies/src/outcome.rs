@@ -13,7 +13,7 @@ use crate::Picture;
 use crepitus_pages::plot::Paper;
 use serde::Serialize;
 
-/// What a study has found.
+/// Findings of a study.
 pub trait Outcome {
     /// Added by `--all`, as the last line of the screen names it: `every case`.
     const REST: &'static str;
@@ -47,7 +47,7 @@ pub trait Outcome {
         Vec::new()
     }
 
-    /// What must hold and does not: the verb then fails.
+    /// Everything that must hold and does not: the verb then fails.
     fn broken(&self) -> Option<String> {
         None
     }

@@ -12,7 +12,7 @@ use crepitus_pages::table::show::{microseconds, scientific};
 use crepitus_scene::cpu_time::CLOCK;
 use std::fmt::Write;
 
-/// What was asked, what to use, what it costs, and why nothing cheaper will do.
+/// The need, what to use, what that costs, and why nothing cheaper will do.
 pub fn in_words(need: &Need, question: &Question<'_>, study: &Study, answer: &Answer) -> String {
     let mut text = asked(need, question, study);
     if let Some(target) = question.target {
