@@ -276,20 +276,18 @@ impl<F: Real> JointVisitor<F> for White {
     type Output = u64;
 
     fn visit<J: StickSlip<F>>(self, mut joint: J) -> u64 {
-        let (mut seed, mut omega, mut all) = (1_u64, F::ZERO, 0);
+        let (mut omega, mut all) = (F::ZERO, 0);
+        let mut random = fastrand::Rng::with_seed(1);
         let limit = F::from_f64(self.limit_nm);
         for _ in 0..self.steps {
-            seed ^= seed << 13;
-            seed ^= seed >> 7;
-            seed ^= seed << 17;
-            let next = F::from_f64((seed >> 11) as f64 / (1_u64 << 53) as f64 * 100.0 - 50.0);
+            let next = F::from_f64(100.0 * random.f64() - 50.0);
             let step = ShaftStep {
                 delta_phi_rad: F::HALF * (omega + next) * F::from_f64(5e-5),
                 omega_start_rad_s: omega,
                 omega_end_rad_s: next,
             };
             // One step in four begins with a jump.
-            omega = if seed.is_multiple_of(4) { -next } else { next };
+            omega = if random.u8(..4) == 0 { -next } else { next };
             let mut events = 0;
             joint.step(&step, |_| events += 1);
             assert!(events <= EVENTS_PER_STEP);

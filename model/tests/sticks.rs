@@ -356,43 +356,30 @@ fn held_as_defined(parameters: Parameters, step_s: f64, steps: &[ShaftStep<f64>]
     Some(held)
 }
 
-/// Pseudo-random numbers between two.
-struct Dice(u64);
-
-impl Dice {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        #[expect(clippy::cast_precision_loss, reason = "53 bits")]
-        let part = (self.0 >> 11) as f64 / (1_u64 << 53) as f64;
-        low + (high - low) * part
-    }
-}
-
 #[test]
 fn a_paper_stick_that_cannot_slip_yet_is_held_at_its_limit() {
-    let mut dice = Dice(1);
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut between = |low: f64, high: f64| low + (high - low) * random.f64();
     let (mut clear, mut held) = (0, 0);
     for _ in 0..2000 {
         let parameters = Parameters {
-            inertia_kg_m2: 10_f64.powf(dice.between(-4.0, -1.5)),
+            inertia_kg_m2: 10_f64.powf(between(-4.0, -1.5)),
             stiffness_nm_per_rad: 400.0,
-            damping_nms_per_rad: dice.between(-1.0, 2.0).max(0.0),
-            kinetic_torque_nm: dice.between(0.1, 0.4),
+            damping_nms_per_rad: between(-1.0, 2.0).max(0.0),
+            kinetic_torque_nm: between(0.1, 0.4),
             static_torque_nm: 0.4,
         };
-        let step_s = 10_f64.powf(dice.between(-4.0, -2.0));
+        let step_s = 10_f64.powf(between(-4.0, -2.0));
         // About as far as a stick goes; the speed may be known badly.
         let reach = 1.5e-3 / step_s;
-        let mut omega = dice.between(0.0, reach);
-        let badly = dice.between(-2.0, 1.0).max(0.0) * reach;
+        let mut omega = between(0.0, reach);
+        let badly = between(-2.0, 1.0).max(0.0) * reach;
         let steps: Vec<_> = (0..6)
             .map(|_| {
-                let (a, b) = (omega, dice.between(-reach, reach));
+                let (a, b) = (omega, between(-reach, reach));
                 omega = b;
                 ShaftStep {
-                    delta_phi_rad: (f64::midpoint(a, b) + dice.between(-badly, badly)) * step_s,
+                    delta_phi_rad: (f64::midpoint(a, b) + between(-badly, badly)) * step_s,
                     omega_start_rad_s: a,
                     omega_end_rad_s: b,
                 }

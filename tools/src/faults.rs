@@ -2,11 +2,12 @@
 //!
 //! ```text
 //! tools/faults/<area>/<name>.patch ─> scratch copy of the sources, one fault at a time
-//!   ─> the test that the patch names, which must fail ─> docs/generated/planted-faults.md
+//!   ─> the test that the patch names, which must fail ─> `Result` in the patch
+//!   ─> docs/generated/planted-faults.md, which is made of the patches alone
 //! ```
 //!
-//! The work tree is never changed. A test fails if a patch does not apply to the sources as
-//! they are.
+//! The sources in the work tree are never changed. A test fails if a patch does not apply to them
+//! as they are, or has no result, and if the page is not that of the patches.
 //!
 //! [`mutants`] are not chosen by us: all that `cargo mutants` lists of a crate.
 

@@ -12,9 +12,9 @@
 //! | to find | look in |
 //! |---|---|
 //! | a recording, from CSV or in memory | [`Series`] |
-//! | the equations | `impedance.rs`, `mass.rs` |
+//! | the equations | [`impedance`](crepitus_plant::effects::reaction_mass::impedance), `mass.rs` |
 //! | the fit and its intervals | `fit.rs`, `derived.rs` |
-//! | what is refused | [`Refusal`], `examined.rs` |
+//! | what is refused | [`Refusal`], `explained_chirp.rs` |
 //!
 //! Not visible in any current: a ring that moves as one with the shell. The mass then swings
 //! against both, and the resonance is that of m·M/(m + M). Hence the vice.
@@ -23,8 +23,8 @@ mod bands;
 mod derived;
 mod explained_chirp;
 mod fit;
-mod impedance;
 mod mass;
+mod numbers;
 mod parameters;
 mod refusal;
 mod second;

@@ -13,7 +13,7 @@
 //!
 //! | to find | look in |
 //! |---|---|
-//! | the equations | `model.rs` |
+//! | the equations | [`swing`](crepitus_plant::swing) |
 //! | what is compared, and the intervals | `problem.rs`, `prior.rs`, `fit.rs` |
 //! | where a swing begins and ends | `swing.rs`, `passing.rs` |
 //! | the quantities, and where each stands in a scene | [`Quantity`] |
@@ -36,7 +36,6 @@
 
 mod fit;
 mod identified;
-mod model;
 mod numbers;
 mod passing;
 mod plausible;
@@ -56,6 +55,6 @@ mod whole;
 pub use identified::{Brace, Trace, TracePoint, identify};
 pub use prior::TORQUE_DEVIATION;
 pub use quantity::Quantity;
-pub use recording::{GRAVITY, Measured, Recording, Sample, Weight};
+pub use recording::{Measured, Recording, Sample, Weight};
 pub use refusal::Refusal;
 pub use shown::{Result as QuantityResult, Shown};

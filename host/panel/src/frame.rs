@@ -5,11 +5,12 @@
 //! bin      torque, model, speed, angle: low f32 ‖ high f32 each ‖ states u32 ‖ breaks u16 ‖ marks u16
 //! ```
 //!
-//! All little endian; N·m, rad/s, rad. `number` counts the frames of the live view, which
-//! the page answers; in a trace it is the request's.
+//! All little endian; N·m, rad/s, rad; NaN without a value. `number` counts the frames of
+//! the live view, which the page answers; in a trace it is the request's.
 
-use crate::live::{Bin, Span};
+use crate::live::Bin;
 use axum::body::Bytes;
+use crepitus_plant::Extremes;
 
 /// Version of the layout.
 const VERSION: u8 = 1;
@@ -78,15 +79,25 @@ pub(crate) fn frame(header: &Header, bins: &[Bin]) -> Bytes {
 }
 
 fn append(out: &mut Vec<u8>, bin: &Bin, masks: Masks) {
-    let hidden = |span: Span| if masks.torque { Span::NONE } else { span };
-    for span in [
+    let hidden = |shown: Extremes<f32>| {
+        if masks.torque {
+            Extremes::default()
+        } else {
+            shown
+        }
+    };
+    for shown in [
         hidden(bin.torque_nm),
         hidden(bin.model_nm),
         bin.speed_rad_s,
         bin.angle_rad,
     ] {
-        out.extend(span.low.to_le_bytes());
-        out.extend(span.high.to_le_bytes());
+        let ends = if shown.is_empty() {
+            [f32::NAN; 2]
+        } else {
+            [shown.low, shown.high]
+        };
+        out.extend(ends.into_iter().flat_map(f32::to_le_bytes));
     }
     let (states, breaks, marks) = if masks.states {
         // Sticking and slipping would tell crepitus from the others.

@@ -22,7 +22,7 @@ mod states;
 mod strokes;
 mod target;
 
-pub use envelope::{Bin, Bins, Envelope, Marks, Span};
+pub use envelope::{Bin, Bins, Envelope, Marks};
 pub use pace::{Pace, Score, Verdict};
 pub use states::{STATES, StateName, mask};
 pub use target::{Aim, NAMED, Target, TargetError};

@@ -34,7 +34,6 @@ mod machine;
 pub mod matching;
 mod outcome;
 mod parallel;
-mod random;
 mod report_text;
 pub mod sampling;
 pub mod stability;

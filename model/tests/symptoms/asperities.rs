@@ -119,17 +119,13 @@ impl Spring {
 }
 
 /// Counts of a hand that goes to and fro, rests, hurries and trembles.
-fn hand(seed: u32) -> impl Iterator<Item = i32> {
-    let mut state = seed;
-    let mut next = move |of: u32| {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (state >> 16) % of
-    };
+fn hand(seed: u64) -> impl Iterator<Item = i32> {
+    let mut random = fastrand::Rng::with_seed(seed);
     (0..200).flat_map(move |_| {
-        let ticks = next(90) as usize;
-        let speed = next(5).cast_signed();
-        let way = if next(2) == 0 { 1 } else { -1 };
-        let trembles = next(3) == 0;
+        let ticks = random.u8(..90);
+        let speed = random.i32(0..5);
+        let way = if random.bool() { 1 } else { -1 };
+        let trembles = random.u8(..3) == 0;
         (0..ticks).map(move |tick| match (trembles, tick % 2) {
             (true, 0) => way,
             (true, _) => -way,

@@ -13,7 +13,9 @@
 //! | how listed effects become a plant | [`assembly`] |
 //! | how a plant is stepped | [`plant`], [`chain`], [`branch`], [`compliance`], [`load`], [`actuator`], [`boundary`] |
 //! | where its energy is | [`energy_balance`] |
+//! | a weight that swings in the brace, as a fit simulates it | [`swing`] |
 //! | the spectrum of what vibrates | [`spectrum`] |
+//! | the lowest and highest of a series | [`Extremes`] |
 
 pub mod actuator;
 pub mod assembly;
@@ -26,13 +28,16 @@ pub mod effect;
 pub mod effects;
 pub mod encoder;
 pub mod energy_balance;
+mod extremes;
 pub mod load;
 pub mod motion;
 pub mod piece;
 pub mod plant;
 pub mod recording;
 pub mod spectrum;
+pub mod swing;
 
+pub use extremes::Extremes;
 pub use motion::Motion;
 pub use piece::{Piece, ShaftState};
 pub use plant::Plant;

@@ -212,11 +212,9 @@ mod tests {
     #[test]
     fn noise_is_in_a_band_by_its_width() {
         let mut welch = Welch::new(1e-3, 0).expect("valid step");
-        // Numerical Recipes' quick generator: white enough.
-        let mut x = 1_u32;
+        let mut random = fastrand::Rng::with_seed(1);
         for _ in 0..400_000 {
-            x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            welch.push(f64::from(x) / 4_294_967_296.0 - 0.5);
+            welch.push(random.f64() - 0.5);
         }
         let spectrum = welch.finish().expect("segments");
         // White noise of variance 1/12, of whose 500 Hz the band has 200.

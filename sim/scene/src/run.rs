@@ -27,6 +27,7 @@ pub use summary::{
     CycleSummary, EffectSummary, EnergySummary, EventCounts, LeadSummary, ParameterValue,
     SUMMARY_VERSION, Summary, TankSummary, TorqueLimitSummary, TorqueSummary,
 };
+pub use tally::TorqueTally;
 
 use crate::any_joint::Precise;
 use crate::scene::{Precision, Scene, SolverChoice};

@@ -1,6 +1,6 @@
 //! `sign`, `scale`, `offset_deg` and `repeat` of a recording, as scenes read them.
 
-use crepitus_plant::Motion;
+use crepitus_plant::{Extremes, Motion};
 use crepitus_scene::run::Blind;
 use crepitus_scene::{Overrides, Scene, run};
 use std::fmt::Write as _;
@@ -264,14 +264,12 @@ fn the_form_of_a_file_is_taken_from_it_and_said() {
     ] {
         let scene = scene(&keys).unwrap();
         assert_eq!(scene.title, "walk");
-        let [lowest, highest] =
-            (0..390).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], i| {
-                let deg = scene.motion.at(f64::from(i) / 100.0).phi_rad.to_degrees();
-                [low.min(deg), high.max(deg)]
-            });
+        let Extremes { low, high }: Extremes<f64> = (0..390)
+            .map(|i| scene.motion.at(f64::from(i) / 100.0).phi_rad.to_degrees())
+            .collect();
         assert!(
-            (lowest - 10.0).abs() < 0.5 && (highest - 90.0).abs() < 0.5,
-            "{lowest} {highest}"
+            (low - 10.0).abs() < 0.5 && (high - 90.0).abs() < 0.5,
+            "{low} {high}"
         );
         let read_as = &scene.data.as_ref().unwrap().read_as;
         assert_eq!(read_as.len(), said.len(), "{read_as:?}");

@@ -1,14 +1,14 @@
 //! Edits of a built image: bytes that are replaced wherever they are.
 
 /// Bytes, and those that replace them.
-#[derive(Clone, Debug, Hash)]
+#[derive(Clone, Debug)]
 pub struct ImageEdit {
     pattern: Vec<Masked>,
     with: Vec<u8>,
 }
 
 /// A byte, of which digits may be free.
-#[derive(Clone, Debug, Hash)]
+#[derive(Clone, Debug)]
 struct Masked {
     value: u8,
     mask: u8,

@@ -16,19 +16,20 @@
 //! | `Unseen` | the reason why no test can notice it |
 //! | `Program` | `drive` or `comms`, whose image is built with the fault for the test to run |
 //! | `Image` | bytes of that image, and what replaces them: `8? f3 12 88 -> af f3 00 80` |
+//! | `Result` | written by a trial: hash of what was tried, and the test that failed or `nothing` |
 //! | `# …` | a comment |
 //!
 //! An empty line ends the header. A unified diff follows, as `git diff` writes it. Numbers of
 //! lines may be old, the lines themselves may not: those of each hunk stand in the file once.
 
 use crate::faults::image_edit::ImageEdit;
+use crate::faults::outcome::Outcome;
 use crate::faults::tree;
 use diffy::patch_set::{FileOperation, ParseOptions, PatchSet};
 use diffy::{Hunk, Line};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -36,10 +37,13 @@ use std::path::{Path, PathBuf};
 pub const FOLDER: &str = "tools/faults";
 
 /// Lines of a header.
-const KEYS: [&str; 5] = ["What", "Noticed-by", "Unseen", "Program", "Image"];
+const KEYS: [&str; 6] = ["What", "Noticed-by", "Unseen", "Program", "Image", "Result"];
+
+/// Value of a `Result` if no test failed.
+const NOTHING: &str = "nothing";
 
 /// A program of the firmware.
-#[derive(Clone, Copy, Debug, Hash, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Program {
     /// Program of the drive.
     Drive,
@@ -65,7 +69,7 @@ impl Program {
 }
 
 /// A fault.
-#[derive(Clone, Debug, Hash)]
+#[derive(Clone, Debug)]
 pub struct Fault {
     /// Patch file, from the root of the repository.
     pub file: PathBuf,
@@ -83,6 +87,10 @@ pub struct Fault {
     pub program: Option<Program>,
     /// Edit of that image.
     pub image: Option<ImageEdit>,
+    /// Outcome on record, unless the patch has changed since.
+    pub result: Option<Outcome>,
+    /// Hash of what the outcome depends on.
+    hash: u64,
     /// Changes of the sources; may be empty.
     diff: String,
 }
@@ -99,9 +107,9 @@ pub struct Change {
 /// Reason why a patch cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum PatchError {
-    /// A patch cannot be read.
+    /// A patch cannot be read or written.
     #[error("{}: {source}", path.display())]
-    Read {
+    File {
         /// The file or folder.
         path: PathBuf,
         /// The cause.
@@ -138,16 +146,15 @@ pub enum PatchError {
 /// # Errors
 /// [`PatchError`] if one cannot be read.
 pub fn all(root: &Path) -> Result<Vec<Fault>, PatchError> {
-    let read = |path: PathBuf| move |source| PatchError::Read { path, source };
     let folder = root.join(FOLDER);
-    let files = tree::files(&folder).map_err(read(folder))?;
+    let files = tree::files(&folder).map_err(file_error(&folder))?;
     files
         .iter()
         .filter(|file| file.extension().is_some_and(|e| e == "patch"))
         .map(|file| {
             let file = Path::new(FOLDER).join(file);
             let path = root.join(&file);
-            let text = fs::read_to_string(&path).map_err(read(path))?;
+            let text = fs::read_to_string(&path).map_err(file_error(&path))?;
             Fault::parse(&file, &text)
         })
         .collect()
@@ -170,6 +177,16 @@ impl Fault {
                 return Err(form(file, what));
             }
         }
+        // Other words do not change the outcome.
+        let [what, unseen, result] = ["What", "Unseen", "Result"].map(|key| header.remove(key));
+        let hash = hash(&header, diff);
+        let result = result.and_then(|result| {
+            let by = result.strip_prefix(&format!("{hash:016x} "))?;
+            Some(match by {
+                NOTHING => Outcome::NotNoticed,
+                _ => Outcome::Noticed(by.to_owned()),
+            })
+        });
         let program = (header.remove("Program"))
             .map(|name| Program::named(&name).ok_or(name))
             .transpose()
@@ -182,11 +199,13 @@ impl Fault {
             file: file.to_owned(),
             area: text_of(file.parent().and_then(Path::file_name)),
             name: text_of(file.file_stem()),
-            what: header.remove("What").unwrap_or_default(),
+            what: what.unwrap_or_default(),
             noticed_by: header.remove("Noticed-by"),
-            unseen: header.remove("Unseen"),
+            unseen,
             program,
             image,
+            result,
+            hash,
             diff: diff.to_owned(),
         };
         for (is_wrong, what) in [
@@ -287,11 +306,48 @@ impl Fault {
         }
     }
 
-    /// A number that changes with the sources and with the fault.
-    pub fn fingerprint(&self, sources: u64) -> u64 {
-        let mut hasher = DefaultHasher::new();
-        (sources, self).hash(&mut hasher);
-        hasher.finish()
+    /// Writes the result, if there is one, into the patch in `root`, whole or not at all. A patch
+    /// that has been edited since it was read stays as it is.
+    ///
+    /// # Errors
+    /// [`PatchError::File`] if it cannot be written.
+    pub fn record(&self, root: &Path) -> Result<(), PatchError> {
+        let by = match &self.result {
+            Some(Outcome::Noticed(by)) => by.as_str(),
+            Some(Outcome::NotNoticed) => NOTHING,
+            None => return Ok(()),
+        };
+        let path = root.join(&self.file);
+        let text = fs::read_to_string(&path).map_err(file_error(&path))?;
+        if !Self::parse(&self.file, &text).is_ok_and(|fault| fault.hash == self.hash) {
+            return Ok(());
+        }
+        let result = format!("Result: {:016x} {by}", self.hash);
+        let end = text.find("\n\n").unwrap_or(text.trim_end().len());
+        let (head, diff) = text.split_at(end);
+        let head = head.lines().filter(|line| !line.starts_with("Result: "));
+        let lines: Vec<&str> = head.chain([result.as_str()]).collect();
+        let new = path.with_extension("new");
+        fs::write(&new, lines.join("\n") + diff)
+            .and_then(|()| fs::rename(&new, &path))
+            .map_err(file_error(&path))
+    }
+}
+
+/// FNV-1a hash, 64 bits: it is the same with every compiler.
+fn hash(header: &BTreeMap<&str, String>, diff: &str) -> u64 {
+    let lines = (header.iter()).flat_map(|(key, value)| [*key, ": ", value.as_str(), "\n"]);
+    let bytes = lines.chain([diff]).flat_map(str::bytes);
+    bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+/// Adds the path to an error of the file system.
+fn file_error(path: &Path) -> impl FnOnce(io::Error) -> PatchError + '_ {
+    move |source| PatchError::File {
+        path: path.to_owned(),
+        source,
     }
 }
 
@@ -383,6 +439,41 @@ index 123..456 100644
         }
         let error = fault.apply(Path::new("/nowhere")).unwrap_err();
         assert!(error.to_string().contains("small/a.rs"), "{error}");
+    }
+
+    #[test]
+    fn a_result_is_that_of_the_patch_as_it_is() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("tools/faults/small/two.patch");
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        let image = "What: a\nUnseen: c\nProgram: comms\nImage: 80 -> 81\n";
+        for text in [image, &(HEADER.to_owned() + DIFF)] {
+            fs::write(&path, text).unwrap();
+            let mut fault = parse(text).unwrap();
+            assert_eq!(fault.result, None);
+            let noticed = Outcome::Noticed("small: two".to_owned());
+            for outcome in [Outcome::NotNoticed, noticed] {
+                fault.result = Some(outcome);
+                fault.record(root.path()).unwrap();
+                let recorded = fs::read_to_string(&path).unwrap();
+                assert_eq!(parse(&recorded).unwrap().result, fault.result);
+            }
+        }
+        let recorded = fs::read_to_string(&path).unwrap();
+        for (was, now, is_kept) in [
+            ("two is missing", "one is missing", true),
+            ("--lib", "--test laws", false),
+            ("+c", "+d", false),
+        ] {
+            let result = parse(&recorded.replace(was, now)).unwrap().result;
+            assert_eq!(result.is_some(), is_kept, "{now}");
+        }
+        // Edited while it was tried.
+        let fault = parse(&recorded).unwrap();
+        let edited = recorded.replace("+c", "+d");
+        fs::write(&path, &edited).unwrap();
+        fault.record(root.path()).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), edited);
     }
 
     #[test]

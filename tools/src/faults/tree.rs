@@ -2,15 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// Entries of the root that no test needs.
 const LEFT_OUT: [&str; 4] = [".git", "target", "out", "bench"];
-
-/// Folders of the root that are taken to decide no outcome.
-const ASIDE: [&str; 2] = ["docs", "tools"];
 
 /// Makes `to` a copy of the sources in `from`, with other texts for some files.
 /// A file that is already the same is not written, so that it is not rebuilt.
@@ -44,20 +40,6 @@ fn write_if_changed(path: &Path, bytes: &[u8]) -> io::Result<()> {
         fs::create_dir_all(folder)?;
     }
     fs::write(path, bytes)
-}
-
-/// A number that changes with the sources that outcomes depend on.
-///
-/// # Errors
-/// The file system's error.
-pub fn fingerprint(root: &Path) -> io::Result<u64> {
-    let mut hasher = DefaultHasher::new();
-    let decides = |file: &PathBuf| !ASIDE.iter().any(|folder| file.starts_with(folder));
-    for file in files(root)?.into_iter().filter(decides) {
-        file.hash(&mut hasher);
-        fs::read(root.join(&file))?.hash(&mut hasher);
-    }
-    Ok(hasher.finish())
 }
 
 /// All files below a folder, relative to it, in order.

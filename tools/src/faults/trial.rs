@@ -8,18 +8,21 @@ use crate::faults::patch::{Change, Fault, PatchError, Program};
 use crate::faults::process::{End, run};
 use crate::faults::tree::copy;
 use serde::Deserialize;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Timeout of a build, waiting for others included.
 const BUILD: Duration = Duration::from_hours(1);
 
 /// Timeout of a test program: many times that of the slowest on a slow machine.
 const RUN: Duration = Duration::from_mins(15);
+
+/// Shorter timeout with a fault: so many times what the tests take without one, and so much more.
+const WITH_A_FAULT: (u32, Duration) = (10, Duration::from_mins(1));
 
 /// Name of the logs of what runs without a fault.
 const SOUND: &str = "without-a-fault";
@@ -62,8 +65,8 @@ pub struct Workshop {
     cargo: String,
     /// Images without a fault; empty until a test needs them.
     sound: BTreeMap<Program, Vec<u8>>,
-    /// Arguments of tests that pass without a fault, and whether they run images.
-    passed: BTreeSet<(String, bool)>,
+    /// Arguments of tests that pass without a fault, whether they run images, and what they take.
+    passed: BTreeMap<(String, bool), Duration>,
 }
 
 /// A built test program.
@@ -76,7 +79,7 @@ struct TestProgram {
 
 /// End of tests.
 enum Ran {
-    Passed,
+    Passed(Duration),
     /// No test has this name.
     Nothing,
     Failed(String),
@@ -119,7 +122,7 @@ impl Workshop {
             tree,
             cargo: cargo.to_owned(),
             sound: BTreeMap::new(),
-            passed: BTreeSet::new(),
+            passed: BTreeMap::new(),
         })
     }
 
@@ -133,7 +136,7 @@ impl Workshop {
         };
         let on_images = fault.program.is_some();
         let test = (arguments.clone(), on_images);
-        if self.passed.contains(&test) {
+        if self.passed.contains_key(&test) {
             return Ok(());
         }
         if on_images && self.sound.is_empty() {
@@ -145,8 +148,8 @@ impl Workshop {
             }
         }
         match self.run_tests(arguments, on_images, SOUND)? {
-            Ran::Passed => {
-                self.passed.insert(test);
+            Ran::Passed(took) => {
+                self.passed.insert(test, took);
                 Ok(())
             }
             Ran::Nothing => Err(TrialError::Baseline(format!(
@@ -157,20 +160,21 @@ impl Workshop {
         }
     }
 
-    /// Plants a fault, runs the test that has to notice it, and restores the sources.
+    /// Plants a fault, runs the test that has to notice it, and restores the sources. `None` if
+    /// they do not build with the fault.
     ///
     /// # Errors
     /// [`TrialError`] if the fault does not apply, or if the test fails without it.
-    pub fn attempt(&mut self, fault: &Fault) -> Result<Outcome, TrialError> {
+    pub fn attempt(&mut self, fault: &Fault) -> Result<Option<Outcome>, TrialError> {
         self.baseline(fault)?;
         let (name, changes) = (&fault.name, fault.apply(&self.tree)?);
         let Some(arguments) = &fault.noticed_by else {
-            return Ok(Outcome::NotNoticed);
+            return Ok(Some(Outcome::NotNoticed));
         };
         let ran = if let Some(program) = fault.program {
             let image = self.with(&changes, || self.build_image(program, name))?;
             let Some(mut image) = image else {
-                return Ok(Outcome::DoesNotBuild);
+                return Ok(None);
             };
             fault.edit_image(&mut image)?;
             self.place_image(program, &image)?;
@@ -183,9 +187,9 @@ impl Workshop {
             self.with(&changes, || self.run_tests(arguments, false, name))?
         };
         Ok(match ran {
-            Ran::Passed | Ran::Nothing => Outcome::NotNoticed,
-            Ran::Failed(test) => Outcome::Noticed(test),
-            Ran::NotBuilt => Outcome::DoesNotBuild,
+            Ran::Passed(_) | Ran::Nothing => Some(Outcome::NotNoticed),
+            Ran::Failed(test) => Some(Outcome::Noticed(test)),
+            Ran::NotBuilt => None,
         })
     }
 
@@ -216,8 +220,12 @@ impl Workshop {
         let Some(programs) = self.build_tests(cargo, name)? else {
             return Ok(Ran::NotBuilt);
         };
+        let took = self.passed.get(&(arguments.to_owned(), on_images));
+        let (times, more) = WITH_A_FAULT;
+        let most = took.map_or(RUN, |took| RUN.min(*took * times + more));
         let log = self.log(name, "run");
         let mut ran = Ran::Nothing;
+        let begun = Instant::now();
         for program in programs {
             let mut command = Command::new(&program.path);
             command
@@ -231,12 +239,12 @@ impl Workshop {
             if on_images {
                 command.env("CREPITUS_IMAGES", self.scratch.join("images"));
             }
-            let end = run(&mut command, &log, RUN).map_err(io(&log))?;
+            let end = run(&mut command, &log, most).map_err(io(&log))?;
             let text = fs::read_to_string(&log).map_err(io(&log))?;
             let which = match end {
                 End::Success => {
                     if has_passed(&text) {
-                        ran = Ran::Passed;
+                        ran = Ran::Passed(begun.elapsed());
                     }
                     continue;
                 }
@@ -263,6 +271,8 @@ impl Workshop {
             .args(arguments.split_whitespace())
             .current_dir(&self.tree)
             .env("CARGO_PROFILE_DEV_DEBUG", "false")
+            // Each fault changes a few lines; the gate switches this off.
+            .env("CARGO_INCREMENTAL", "1")
             // A fault may leave something unused.
             .env("RUSTFLAGS", "--cap-lints allow")
             // Never that of the work tree: to Cargo the copy's crates are the

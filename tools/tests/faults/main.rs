@@ -2,6 +2,7 @@
 
 mod apply;
 mod mutants;
+mod page;
 mod trial;
 
 use std::fs;

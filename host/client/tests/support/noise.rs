@@ -1,7 +1,9 @@
 //! A wire that corrupts bytes, the same ones in each run.
 
+use fastrand::Rng;
+
 /// Disturbances of bytes, each once in this many on average; 0: never.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Noise {
     /// Lost.
     pub lose: u64,
@@ -11,7 +13,19 @@ pub struct Noise {
     pub double: u64,
     /// Number of further bytes to lose.
     pub swallow: usize,
-    state: u64,
+    random: Rng,
+}
+
+impl Default for Noise {
+    fn default() -> Self {
+        Self {
+            lose: 0,
+            flip: 0,
+            double: 0,
+            swallow: 0,
+            random: Rng::with_seed(0),
+        }
+    }
 }
 
 impl Noise {
@@ -27,7 +41,7 @@ impl Noise {
                 continue;
             }
             let spoilt = if self.strikes(self.flip) {
-                byte ^ 1 << (self.next() % 8)
+                byte ^ 1 << self.random.u8(..8)
             } else {
                 *byte
             };
@@ -40,15 +54,6 @@ impl Noise {
     }
 
     fn strikes(&mut self, once_in: u64) -> bool {
-        once_in != 0 && self.next().is_multiple_of(once_in)
-    }
-
-    /// SplitMix64.
-    fn next(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        once_in != 0 && self.random.u64(..once_in) == 0
     }
 }

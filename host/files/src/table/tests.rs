@@ -245,18 +245,12 @@ fn no_bytes_panic() {
         b"#",
         b"inDegrees=no\n",
     ];
-    let mut state = 1_u64;
+    let mut random = fastrand::Rng::with_seed(1);
     for _ in 0..4_000 {
         let mut bytes = Vec::new();
-        for _ in 0..state % 40 {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            bytes.extend_from_slice(parts[usize::try_from(state >> 60).unwrap()]);
+        for _ in 0..random.u8(..40) {
+            bytes.extend_from_slice(random.choice(parts).unwrap());
         }
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(7);
         if let Err(error) = read(&bytes, &["time", "knee"]) {
             assert!(!error.is_empty());
         }

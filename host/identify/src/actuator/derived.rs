@@ -1,8 +1,8 @@
 //! Quantities derived from a fit, with first-order error propagation.
 
 use crate::actuator::fit::Fit;
-use crate::actuator::impedance::{Impedance, NUMBERS};
 use crate::estimate::{DEVIATIONS, Estimate};
+use crepitus_plant::effects::reaction_mass::impedance::{Impedance, NUMBERS};
 
 /// Returns a function of the fitted parameters with its 95 % confidence interval, to first order.
 pub(crate) fn derived(fit: &Fit, of: impl Fn(&Impedance) -> f64) -> Estimate {

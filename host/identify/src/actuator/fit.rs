@@ -11,11 +11,12 @@
 //! impedance, and σ²·(JᵀJ)⁻¹ is the covariance of its numbers.
 
 use crate::actuator::bands::{Mean, bands};
-use crate::actuator::impedance::{Column, Impedance, NUMBERS, Square};
+use crate::actuator::numbers::{Column, Square, stepped};
 use crate::actuator::second::second;
 use crate::actuator::spectrum::{Line, Spectrum};
 use crate::actuator::start::start;
 use crate::descent::{Ending, Equations, LeastSquares, descend};
+use crepitus_plant::effects::reaction_mass::impedance::{Impedance, NUMBERS};
 use crepitus_plant::spectrum::Complex;
 use nalgebra::Const;
 
@@ -148,7 +149,7 @@ impl LeastSquares<Const<NUMBERS>> for Lines<'_> {
     }
 
     fn stepped(&self, impedance: &Impedance, step: &Column) -> Impedance {
-        impedance.stepped(step)
+        stepped(impedance, step)
     }
 }
 

@@ -11,9 +11,9 @@
 
 use crate::actuator::derived::{derived, variance};
 use crate::actuator::fit::Fit;
-use crate::actuator::impedance::Impedance;
 use crate::actuator::refusal::Refusal;
 use crate::estimate::{DEVIATIONS, Estimate};
+use crepitus_plant::effects::reaction_mass::impedance::Impedance;
 use std::f64::consts::TAU;
 
 /// A weighed mass with its uncertainty.

@@ -4,17 +4,15 @@ use crate::actuator::bands::Mean;
 use crate::actuator::derived::derived;
 use crate::actuator::explained_chirp::ExplainedChirp;
 use crate::actuator::fit::Fit;
-use crate::actuator::impedance::Impedance;
 use crate::actuator::mass::{Split, Weighed, agreed, by_added_mass, by_weight};
 use crate::actuator::refusal::Refusal;
 use crate::actuator::{Band, Series};
 use crate::estimate::Estimate;
 use crepitus_model::render::effects::vibration_actuator::VibrationActuatorSettings;
+use crepitus_plant::effects::limb::STANDARD_GRAVITY;
+use crepitus_plant::effects::reaction_mass::impedance::Impedance;
 use crepitus_plant::spectrum::Complex;
 use std::f64::consts::TAU;
-
-/// Standard gravity, m/s².
-const STANDARD_GRAVITY: f64 = 9.806_65;
 
 /// Widest half interval of a proposed parameter, as a share of its value.
 const MOST_UNCERTAIN: f64 = 0.05;

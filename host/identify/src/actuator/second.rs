@@ -16,8 +16,9 @@
 //! single column, with what the first resonance can take over projected away, is a
 //! closed form: no second fit is needed to see one.
 
-use crate::actuator::impedance::{Column, Impedance, NUMBERS, Square};
+use crate::actuator::numbers::{Column, Square, stepped};
 use crate::actuator::spectrum::Line;
+use crepitus_plant::effects::reaction_mass::impedance::{Impedance, NUMBERS};
 use crepitus_plant::spectrum::Complex;
 use std::f64::consts::TAU;
 
@@ -131,7 +132,7 @@ fn tried(
 
 /// Returns the greatest relative change that the first resonance has taken over.
 fn moved(first: &Impedance, taken: &Column) -> f64 {
-    let without = first.stepped(&-taken);
+    let without = stepped(first, &-taken);
     let change = |of: &dyn Fn(&Impedance) -> f64| (of(&without) / of(first) - 1.0).abs();
     let coupling = 0.5 * change(&|z| z.coupling);
     change(&|z| z.resonance)

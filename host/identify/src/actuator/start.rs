@@ -2,7 +2,7 @@
 //! since the impedance is linear in R, L and b.
 
 use crate::actuator::bands::Mean;
-use crate::actuator::impedance::Impedance;
+use crepitus_plant::effects::reaction_mass::impedance::Impedance;
 use crepitus_plant::spectrum::Complex;
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,8 +1,8 @@
 //! Recordings of a known impedance, for tests: chirp, current by the equation, noise.
 
-use crate::actuator::impedance::Impedance;
 use crate::actuator::{Band, Series};
 use crepitus_model::control::chirp::{Chirp, ChirpSettings};
+use crepitus_plant::effects::reaction_mass::impedance::Impedance;
 use realfft::RealFftPlanner;
 use std::f64::consts::TAU;
 

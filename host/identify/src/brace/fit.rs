@@ -22,13 +22,13 @@
 //! of which a deviation is never taken below that of H⁻¹, nor below Σ |H⁻¹·g|: the errors of
 //! a model have the same sign in one half swing and the next, and do not average out.
 
-use crate::brace::model::STEP_S;
 use crate::brace::numbers::{NUMBERS, place};
 use crate::brace::prior::Prior;
 use crate::brace::problem::Problem;
 use crate::brace::residuals::{LEAST_DEVIATION, effective_deviation, rms};
 use crate::brace::swing::Swing;
 use crate::descent::{Ending, descend};
+use crepitus_plant::swing::STEP_S;
 use nalgebra::{DMatrix, DVector};
 
 /// Lengths of the beginning of a swing that are fitted before the whole, s.
@@ -81,7 +81,7 @@ const FIRST_DEVIATION: f64 = 2e-3;
 /// Fitted parameters with covariance and residuals.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
-    /// Parameters of the brace, in the order of [`Numbers`](crate::brace::numbers::Numbers).
+    /// Parameters of the brace, in the order of [`place`].
     pub(crate) numbers: [f64; NUMBERS],
     /// Covariance of the parameters.
     pub(crate) covariance: DMatrix<f64>,

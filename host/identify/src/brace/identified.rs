@@ -11,6 +11,7 @@ use crate::brace::refusal::Refusal;
 use crate::brace::shown::{Result, Shown};
 use crate::brace::swing::{Swing, swings};
 use crate::brace::{plausible, visible};
+use crepitus_plant::swing::STEP_S;
 
 /// Identified brace: values, quality of the fit, warnings.
 #[derive(Clone, Debug)]
@@ -40,10 +41,7 @@ impl Brace {
     /// Returns the number of swings and their total duration, s.
     pub fn swung(&self) -> (usize, f64) {
         let steps: usize = self.swings.iter().map(|s| s.torques_nm.len()).sum();
-        (
-            self.swings.len(),
-            steps as f64 * crate::brace::model::STEP_S,
-        )
+        (self.swings.len(), steps as f64 * STEP_S)
     }
 
     /// Returns each swing as it was measured, and what the fit leaves of it.

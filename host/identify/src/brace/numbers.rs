@@ -1,35 +1,11 @@
 //! Parameters of a brace with a weight in its cuffs, those to be estimated and those that were
 //! measured.
 
+use crepitus_plant::effects::drivetrain::Gear;
+use crepitus_plant::swing::WeightedBrace;
+
 /// Number of parameters.
 pub(crate) const NUMBERS: usize = 11;
-
-/// Parameters of a brace with its weight; angles are those of the joint, rad.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Numbers {
-    /// Dry friction of motor and gear, N·m.
-    pub(crate) friction_nm: f64,
-    /// Share of the motor's torque that the gear loses.
-    pub(crate) load_loss: f64,
-    /// Viscous damping about the axis, N·m·s/rad.
-    pub(crate) viscous_nms: f64,
-    /// Inertia of the rotor, kg·m².
-    pub(crate) rotor_kg_m2: f64,
-    /// Inertia of the brace between gear and cuffs, kg·m².
-    pub(crate) brace_kg_m2: f64,
-    /// Lost motion of the gear, rad.
-    pub(crate) gap_rad: f64,
-    /// Stiffness of the cuffs, N·m/rad.
-    pub(crate) stiffness_nm: f64,
-    /// Damping of the cuffs, N·m·s/rad.
-    pub(crate) damping_nms: f64,
-    /// Moment of the weight when it is horizontal, N·m.
-    pub(crate) moment_nm: f64,
-    /// Inertia of the weight about the axis, kg·m².
-    pub(crate) weight_kg_m2: f64,
-    /// Torque of the motor over its nominal one, from current and torque constant.
-    pub(crate) torque_scale: f64,
-}
 
 /// Indices of parameters in the array.
 pub(crate) mod place {
@@ -43,6 +19,7 @@ pub(crate) mod place {
     pub(crate) const DAMPING: usize = 7;
     pub(crate) const MOMENT: usize = 8;
     pub(crate) const WEIGHT: usize = 9;
+    /// Torque of the motor over its nominal one, from current and torque constant.
     pub(crate) const TORQUE_SCALE: usize = 10;
 }
 
@@ -57,20 +34,20 @@ pub(crate) const MOST: [f64; NUMBERS] = [
     50.0, 3.0, 20.0, 5.0, 2.0, 0.5, 3000.0, 30.0, 500.0, 50.0, 20.0,
 ];
 
-impl From<[f64; NUMBERS]> for Numbers {
-    fn from(n: [f64; NUMBERS]) -> Self {
-        Self {
-            friction_nm: n[0],
-            load_loss: n[1],
-            viscous_nms: n[2],
-            rotor_kg_m2: n[3],
-            brace_kg_m2: n[4],
-            gap_rad: n[5],
-            stiffness_nm: n[6],
-            damping_nms: n[7],
-            moment_nm: n[8],
-            weight_kg_m2: n[9],
-            torque_scale: n[10],
-        }
+/// Returns the brace that is simulated with these parameters.
+pub(crate) fn weighted_brace(numbers: &[f64; NUMBERS]) -> WeightedBrace {
+    WeightedBrace {
+        gear: Gear {
+            inertia_kg_m2: numbers[place::ROTOR],
+            friction_nm: numbers[place::FRICTION],
+            load_loss: numbers[place::LOAD_LOSS],
+        },
+        gap_rad: numbers[place::GAP],
+        brace_kg_m2: numbers[place::BRACE],
+        stiffness_nm: numbers[place::STIFFNESS],
+        damping_nms: numbers[place::DAMPING],
+        moment_nm: numbers[place::MOMENT],
+        weight_kg_m2: numbers[place::WEIGHT],
+        viscous_nms: numbers[place::VISCOUS],
     }
 }

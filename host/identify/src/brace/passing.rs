@@ -1,6 +1,6 @@
 //! Choice of the beginning of a swing.
 
-use crate::brace::model::STEP_S;
+use crepitus_plant::swing::STEP_S;
 
 /// Criterion for the beginning of a swing. After the release the cuffs may still ring and the teeth
 /// be apart, so the criterion with the smallest residual is taken.

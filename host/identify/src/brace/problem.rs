@@ -1,11 +1,11 @@
 //! Cost function of the fit: residuals of all swings and prior, with their derivatives.
 
-use crate::brace::model::{Begin, STEP_S, swing};
-use crate::brace::numbers::{LEAST, MOST, NUMBERS, place};
+use crate::brace::numbers::{LEAST, MOST, NUMBERS, place, weighted_brace};
 use crate::brace::prior::Prior;
 use crate::brace::start;
 use crate::brace::swing::Swing;
 use crate::descent::{Equations, LeastSquares};
+use crepitus_plant::swing::{Begin, STEP_S, swing};
 use nalgebra::{DMatrix, DVector, Dyn};
 
 /// Steps from one compared angle to the next: 2 ms.
@@ -136,7 +136,9 @@ impl Problem<'_> {
         };
         let steps = it.torques_nm.len().min(self.horizon);
         let hang = vector[NUMBERS + it.recording];
-        let angles = swing(&numbers.into(), hang, &begin, &it.torques_nm[..steps]);
+        let scale = numbers[place::TORQUE_SCALE];
+        let torques_nm: Vec<f64> = it.torques_nm[..steps].iter().map(|t| scale * t).collect();
+        let angles = swing(&weighted_brace(&numbers), hang, &begin, &torques_nm);
         std::iter::once(begin.angle_rad)
             .chain(angles)
             .step_by(STRIDE)

@@ -1,5 +1,7 @@
 //! Input of the identification: samples of a device, and the weight.
 
+use crepitus_plant::effects::limb::STANDARD_GRAVITY;
+
 /// A sample of a recorded device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
@@ -54,9 +56,6 @@ pub struct Weight {
     pub inertia_kg_m2: Measured,
 }
 
-/// Standard gravity, m/s².
-pub const GRAVITY: f64 = 9.806_65;
-
 impl Weight {
     /// Returns a weight of `mass_kg` with its centre `lever_m` from the axis. Without
     /// `inertia_kg_m2` the mass is a point, with m·l². `deviation` is the relative standard
@@ -66,7 +65,7 @@ impl Weight {
         let inertia = inertia_kg_m2.unwrap_or(mass_kg * lever_m * lever_m);
         Self {
             moment_nm: Measured {
-                value: mass_kg * GRAVITY * lever_m,
+                value: mass_kg * STANDARD_GRAVITY * lever_m,
                 deviation,
             },
             inertia_kg_m2: Measured {

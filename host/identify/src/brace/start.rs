@@ -1,9 +1,9 @@
 //! Initial guess of the fit, from turning points alone.
 
-use crate::brace::model::STEP_S;
 use crate::brace::numbers::{NUMBERS, place};
 use crate::brace::prior::Prior;
 use crate::brace::swing::Swing;
+use crepitus_plant::swing::STEP_S;
 use std::f64::consts::PI;
 
 /// Estimates the angle at which the weight hangs at rest, by recording, rad. Dry friction shifts

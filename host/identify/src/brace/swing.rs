@@ -11,11 +11,12 @@
 //! touches it any more and the gear's teeth are surely in contact, and ends at rest. The
 //! release is the turning point that is farthest from rest.
 
-use crate::brace::model::STEP_S;
 use crate::brace::passing::{Passing, passes};
 use crate::brace::recording::Recording;
 use crate::brace::refusal::Refusal;
 use crate::brace::whole::whole;
+use crepitus_plant::Extremes;
+use crepitus_plant::swing::STEP_S;
 
 /// Shortest rest, s: longer than a weight needs to cross the gap.
 const REST_S: f64 = 0.35;
@@ -199,12 +200,7 @@ fn filled(angles: &[f64]) -> Vec<f64> {
 }
 
 fn extent(angles: &[f64]) -> f64 {
-    let (low, high) = angles
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), a| {
-            (low.min(*a), high.max(*a))
-        });
-    high - low
+    angles.iter().copied().collect::<Extremes<f64>>().width()
 }
 
 /// Returns first and last step of each motion between two rests, and whether the recording ends in

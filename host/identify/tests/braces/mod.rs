@@ -5,6 +5,7 @@
 
 use crate::support::{Heard, Host, scene};
 use crepitus_identify::brace::{Quantity, Recording, Sample, Weight};
+use crepitus_plant::effects::limb::STANDARD_GRAVITY;
 use crepitus_protocol::management::Identity;
 use crepitus_protocol::{DeviceSettings, TICK_S};
 use crepitus_recording::{Begin, Damage, Metadata, Recorder};
@@ -239,7 +240,7 @@ impl Truth {
             stiffness_nm: nominal.stiffness_nm * factor(random),
             damping_nms: nominal.damping_nms * factor(random),
             torque_scale: 1.0 + 0.03 * normal(random).clamp(-2.0, 2.0),
-            mass_kg: moment_nm / (crepitus_identify::brace::GRAVITY * lever_m),
+            mass_kg: moment_nm / (STANDARD_GRAVITY * lever_m),
             lever_m,
             release_deg: 45.0 + 20.0 * random.f64(),
             weighed_wrong: normal(random),

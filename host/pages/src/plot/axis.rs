@@ -3,6 +3,7 @@
 
 use crate::plot::number;
 use crate::plot::text::{SIZE, width};
+use crepitus_plant::Extremes;
 
 /// See the module.
 #[derive(Clone, Debug)]
@@ -172,12 +173,9 @@ impl Axis {
 
 /// The smallest and largest finite value.
 pub fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
-    values
-        .into_iter()
-        .filter(|value| value.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-            (low.min(value), high.max(value))
-        })
+    let finite = values.into_iter().filter(|value| value.is_finite());
+    let extremes: Extremes<f64> = finite.collect();
+    (extremes.low, extremes.high)
 }
 
 /// A range that can be drawn: finite, and wider than rounding noise.

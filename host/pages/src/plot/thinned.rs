@@ -41,17 +41,6 @@ impl Bin {
         }
     }
 
-    fn push(&mut self, later: Point) {
-        if later.y < self.low.y {
-            self.low = later;
-        }
-        if later.y > self.high.y {
-            self.high = later;
-        }
-        self.last = later;
-        self.count += 1;
-    }
-
     fn append(&mut self, later: &Self) {
         if later.low.y < self.low.y {
             self.low = later.low;
@@ -88,14 +77,14 @@ impl Thinned {
         if !(x.is_finite() && y.is_finite()) {
             return;
         }
-        let point = Point { x, y };
+        let bin = Bin::of(Point { x, y });
         match self.bins.last_mut() {
-            Some(last) if last.count < self.per_bin => last.push(point),
+            Some(last) if last.count < self.per_bin => last.append(&bin),
             _ => {
                 if self.bins.len() == self.capacity {
                     self.halve();
                 }
-                self.bins.push(Bin::of(point));
+                self.bins.push(bin);
             }
         }
     }

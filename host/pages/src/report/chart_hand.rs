@@ -106,14 +106,14 @@ fn panel<'f>(
     let window = &figures.whole;
     // That of the torque above, so that the two can be compared.
     let time = if bins.is_none() && !window.torque.is_empty() {
-        Axis::linear(window.start, window.end, 8)
+        Axis::linear(window.time.low, window.time.high, 8)
     } else {
         time_axis(figures, &course.points())
     };
     let height = if last { LAST_HEIGHT } else { HEIGHT };
     Panel::new(height, time, (title, course.axis(5)), move |plot| {
         if bins.is_none() {
-            shade(plot, &window.spans(window.start, window.end));
+            shade(plot, &window.spans(window.time.low, window.time.high));
             plot.grid();
             course.draw(plot, bins, LEG);
         } else {

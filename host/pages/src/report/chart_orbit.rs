@@ -24,11 +24,11 @@ pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
     }
     let mut charts = Vec::new();
     let mut phases = Vec::new();
-    let whole = (figures.whole.start, figures.whole.end);
+    let whole = figures.whole.time;
     for Titled { title, window } in windows(figures) {
         let view = window.view();
         // A window of nearly the whole run would be the same chart twice.
-        let is_whole = view.1 - view.0 > 0.8 * (whole.1 - whole.0);
+        let is_whole = view.1 - view.0 > 0.8 * whole.width();
         let path = window.orbit.segments(view.0, view.1);
         if is_whole || path.is_empty() {
             continue;
@@ -46,7 +46,7 @@ pub(crate) fn figure(figures: &Figures, paper: Paper) -> Option<Figure> {
         charts.push(range_chart((half, paper), &both));
         ranges = Some(both);
     } else {
-        let path = figures.whole.orbit.segments(whole.0, whole.1);
+        let path = figures.whole.orbit.segments(whole.low, whole.high);
         if !path.is_empty() {
             phases.extend(path.iter().map(|segment| segment.phase));
             charts.push(path_chart(WHOLE.to_owned(), (half, paper), &path));

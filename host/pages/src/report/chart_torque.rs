@@ -10,7 +10,7 @@ use crate::plot::{Axis, Chart, Figure, Key, Panel, Paper, Plot, Point, Sign, ext
 
 use crate::report::chart_motion::time_axis;
 use crate::report::collector::Figures;
-use crate::report::envelope::Bin;
+use crate::report::envelope::{Bin, edges};
 use crate::report::levels;
 use crate::report::phases::{self, shade};
 
@@ -91,10 +91,10 @@ fn line<'f>(figures: &'f Figures, torque: &'f [Point]) -> Panel<'f> {
     let levels = levels::levels_in(figures.levels, torque);
     let y = levels::torque_axis(torque, &levels);
     let names = levels::names(&y, &levels, HEIGHT);
-    let ends = [window.start, window.end].map(|time| Point::new(time, 0.0));
+    let ends = [window.time.low, window.time.high].map(|time| Point::new(time, 0.0));
     let time = time_axis(figures, &ends);
     let panel = Panel::new(HEIGHT, time, ("Torque (N·m)", y), move |plot| {
-        shade(plot, &window.spans(window.start, window.end));
+        shade(plot, &window.spans(window.time.low, window.time.high));
         plot.grid();
         levels::draw(plot, &levels);
         plot.line(torque, TORQUE, 1.5);
@@ -109,13 +109,6 @@ fn line<'f>(figures: &'f Figures, torque: &'f [Point]) -> Panel<'f> {
 
 fn range<'f>(figures: &'f Figures, torque: &[Point]) -> Vec<Panel<'f>> {
     let bins = figures.envelope.cycle_bins();
-    // Two points a bin: steps, since extremes belong to the whole bin.
-    let edge = |pick: fn(&Bin) -> f64| -> Vec<Point> {
-        bins.iter()
-            .filter(|bin| bin.low <= bin.high)
-            .flat_map(|bin| [bin.start, bin.end].map(|time| Point::new(time, pick(bin))))
-            .collect()
-    };
     let mean: Vec<Point> = bins
         .iter()
         .map(|bin| Point::new(bin.middle(), bin.mean()))
@@ -125,7 +118,7 @@ fn range<'f>(figures: &'f Figures, torque: &[Point]) -> Vec<Panel<'f>> {
     let levels = levels::levels_in(figures.levels, torque);
     let y = levels::torque_axis(torque, &levels);
     let names = levels::names(&y, &levels, RANGE_HEIGHT);
-    let (low, high) = (edge(|bin| bin.low), edge(|bin| bin.high));
+    let [low, high] = edges(&bins);
     let above = Panel::new(
         RANGE_HEIGHT,
         time.clone(),
@@ -173,7 +166,7 @@ fn draw_known_shares(plot: &mut Plot, bins: &[Bin]) {
     for bin in bins {
         if let Some(shares) = bin.shares() {
             // Steps, as above.
-            for time in [bin.start, bin.end] {
+            for time in bin.ends() {
                 floor.push(Point::new(time, 0.0));
                 over_stick.push(Point::new(time, 100.0 * shares.stick));
                 over_positive.push(Point::new(time, 100.0 * (shares.stick + shares.positive)));

@@ -132,7 +132,8 @@ impl Choice {
         };
         let fastest = self.fastest.filter(|fastest| {
             onset.as_ref().is_none_or(|onset| {
-                fastest.start >= onset.end && fastest.mean_speed() > 1.05 * onset.mean_speed()
+                fastest.time.low >= onset.time.high
+                    && fastest.mean_speed() > 1.05 * onset.mean_speed()
             })
         });
         (onset, fastest)
@@ -174,7 +175,7 @@ mod tests {
         assert_eq!(fastest.count(EventKind::Stick), CYCLES + 1);
         let peak = 0.8 * std::f64::consts::TAU * 0.25;
         assert!(fastest.mean_speed() > 0.95 * peak);
-        assert!(fastest.start > onset.end);
+        assert!(fastest.time.low > onset.time.high);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 
 use crate::plot::palette::{Ink, RANGE};
 use crate::plot::{Axis, Plot, Point, Thinned, extent};
-use crate::report::envelope::{Bin, Envelope};
+use crate::report::envelope::{Bin, Envelope, edges};
 
 /// See the module.
 #[derive(Clone, Debug)]
@@ -85,8 +85,8 @@ impl Course {
             values
         };
         let few = bins.len() / 25;
-        let usual_low = sorted(|bin| bin.low)[few];
-        let usual_high = sorted(|bin| bin.high)[bins.len() - 1 - few];
+        let usual_low = sorted(|bin| bin.value.low)[few];
+        let usual_high = sorted(|bin| bin.value.high)[bins.len() - 1 - few];
         if usual_high > usual_low && high - low > SQUEEZED * (usual_high - usual_low) {
             Shown {
                 low: usual_low,
@@ -105,7 +105,10 @@ impl Course {
     }
 
     fn bins(&self) -> impl Iterator<Item = &Bin> {
-        self.envelope.bins.iter().filter(|bin| bin.low <= bin.high)
+        self.envelope
+            .bins
+            .iter()
+            .filter(|bin| !bin.value.is_empty())
     }
 
     /// Draws it: as range and mean of so many bins each, or as a line.
@@ -118,19 +121,14 @@ impl Course {
             .envelope
             .wide_bins(bins)
             .into_iter()
-            .filter(|bin| bin.low <= bin.high)
+            .filter(|bin| !bin.value.is_empty())
             .collect();
-        // Two points a bin: steps, since extremes belong to the whole bin.
-        let edge = |pick: fn(&Bin) -> f64| -> Vec<Point> {
-            bins.iter()
-                .flat_map(|bin| [bin.start, bin.end].map(|time| Point::new(time, pick(bin))))
-                .collect()
-        };
         let mean: Vec<Point> = bins
             .iter()
             .map(|bin| Point::new(bin.middle(), bin.mean()))
             .collect();
-        plot.band(&edge(|bin| bin.low), &edge(|bin| bin.high), RANGE, 1.0);
+        let [low, high] = edges(&bins);
+        plot.band(&low, &high, RANGE, 1.0);
         plot.line(&mean, ink, 1.5);
     }
 

@@ -4,16 +4,16 @@
 //! Times in a phase come from the events, not from the rows: a stick shorter
 //! than a row counts in full.
 
+use crate::plot::Point;
 use crepitus_model::{EventKind, Phase, Sense};
+use crepitus_plant::Extremes;
 use crepitus_scene::trace::EventRecord;
 
 /// One stretch of time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Bin {
-    pub(crate) start: f64,
-    pub(crate) end: f64,
-    pub(crate) low: f64,
-    pub(crate) high: f64,
+    time: Extremes<f64>,
+    pub(crate) value: Extremes<f64>,
     sum: f64,
     count: u64,
     rows: u64,
@@ -32,25 +32,9 @@ pub(crate) struct Shares {
 }
 
 impl Bin {
-    const EMPTY: Self = Self {
-        start: f64::INFINITY,
-        end: f64::NEG_INFINITY,
-        low: f64::INFINITY,
-        high: f64::NEG_INFINITY,
-        sum: 0.0,
-        count: 0,
-        rows: 0,
-        breaks: 0,
-        stick_s: 0.0,
-        positive_s: 0.0,
-        negative_s: 0.0,
-    };
-
     fn append(&mut self, other: &Self) {
-        self.start = self.start.min(other.start);
-        self.end = self.end.max(other.end);
-        self.low = self.low.min(other.low);
-        self.high = self.high.max(other.high);
+        self.time.join(other.time);
+        self.value.join(other.value);
         self.sum += other.sum;
         self.count += other.count;
         self.rows += other.rows;
@@ -64,8 +48,13 @@ impl Bin {
         self.sum / self.count as f64
     }
 
+    /// Times of its first and last row.
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        [self.time.low, self.time.high]
+    }
+
     pub(crate) fn middle(&self) -> f64 {
-        0.5 * (self.start + self.end)
+        0.5 * (self.time.low + self.time.high)
     }
 
     pub(crate) fn shares(&self) -> Option<Shares> {
@@ -106,7 +95,7 @@ impl Envelope {
     pub(crate) fn new(rows_expected: u64) -> Self {
         Self {
             bins: Vec::new(),
-            open: Bin::EMPTY,
+            open: Bin::default(),
             rows_per_bin: rows_expected.div_ceil(Self::CAPACITY as u64).max(1),
             phase: None,
             since: f64::NAN,
@@ -132,11 +121,10 @@ impl Envelope {
         if !self.events_seen || self.phase.is_none() {
             self.phase = phase;
         }
-        self.open.start = self.open.start.min(time);
-        self.open.end = self.open.end.max(time);
+        self.open.time.add(time);
         self.open.rows += 1;
         if torque.is_finite() {
-            self.extreme(torque);
+            self.open.value.add(torque);
             self.open.sum += torque;
             self.open.count += 1;
         }
@@ -152,20 +140,10 @@ impl Envelope {
         self.advance(event.time_s);
         self.events_seen = true;
         self.phase = Some(Phase::from_sign(event.to));
-        self.extreme(event.torque_before_nm);
-        self.extreme(event.torque_after_nm);
+        self.open.value.add(event.torque_before_nm);
+        self.open.value.add(event.torque_after_nm);
         if event.kind == EventKind::Break {
             self.open.breaks += 1;
-        }
-    }
-
-    fn extreme(&mut self, torque: f64) {
-        // A comparison with NaN is false: nothing changes.
-        if torque < self.open.low {
-            self.open.low = torque;
-        }
-        if torque > self.open.high {
-            self.open.high = torque;
         }
     }
 
@@ -189,15 +167,13 @@ impl Envelope {
         }
         // After halving, the open bin is a short one; it stays open.
         if self.open.rows >= self.rows_per_bin {
-            self.bins.push(self.open);
-            self.open = Bin::EMPTY;
+            self.bins.push(std::mem::take(&mut self.open));
         }
     }
 
     pub(crate) fn finish(mut self) -> Self {
         if self.open.rows > 0 {
-            self.bins.push(self.open);
-            self.open = Bin::EMPTY;
+            self.bins.push(std::mem::take(&mut self.open));
         }
         self
     }
@@ -257,13 +233,24 @@ impl Envelope {
 fn merged(bins: &[Bin], count: usize) -> Vec<Bin> {
     bins.chunks(count)
         .map(|group| {
-            let mut bin = Bin::EMPTY;
+            let mut bin = Bin::default();
             for part in group {
                 bin.append(part);
             }
             bin
         })
         .collect()
+}
+
+/// Lowest and highest values of bins as two lines: steps, since extremes belong to the whole bin.
+pub(crate) fn edges(bins: &[Bin]) -> [Vec<Point>; 2] {
+    let edge = |pick: fn(&Bin) -> f64| -> Vec<Point> {
+        bins.iter()
+            .filter(|bin| !bin.value.is_empty())
+            .flat_map(|bin| bin.ends().map(|time| Point::new(time, pick(bin))))
+            .collect()
+    };
+    [edge(|bin| bin.value.low), edge(|bin| bin.value.high)]
 }
 
 #[cfg(test)]
@@ -293,8 +280,8 @@ mod tests {
             }
             let envelope = envelope.finish();
             assert!(envelope.bins.len() <= Envelope::CAPACITY + 1);
-            let high = envelope.bins.iter().map(|b| b.high).fold(0.0, f64::max);
-            assert_eq!(high, 7.0);
+            let highs = envelope.bins.iter().map(|b| b.value.high);
+            assert_eq!(highs.fold(0.0, f64::max), 7.0);
             let rows: u64 = envelope.bins.iter().map(|b| b.count).sum();
             assert_eq!(rows, 100_000);
         }
@@ -336,6 +323,6 @@ mod tests {
             })
         );
         assert_eq!(envelope.breaks(), 1);
-        assert_eq!(envelope.bins.last().map(|b| b.high), Some(0.4));
+        assert_eq!(envelope.bins.last().map(|b| b.value.high), Some(0.4));
     }
 }

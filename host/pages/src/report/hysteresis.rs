@@ -4,6 +4,7 @@
 //! The number of angle bins is bounded: when the shaft reaches further, bins
 //! widen to twice their width and neighbours merge.
 
+use crepitus_plant::Extremes;
 use std::collections::BTreeMap;
 
 /// Range of θ in one bin of angle, rad.
@@ -14,21 +15,10 @@ pub(crate) struct Range {
     pub(crate) high: f64,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Cell {
-    from: f64,
-    to: f64,
-    low: f64,
-    high: f64,
-}
-
-impl Cell {
-    fn append(&mut self, other: &Self) {
-        self.from = self.from.min(other.from);
-        self.to = self.to.max(other.to);
-        self.low = self.low.min(other.low);
-        self.high = self.high.max(other.high);
-    }
+    angle: Extremes<f64>,
+    theta: Extremes<f64>,
 }
 
 type Cells = BTreeMap<i64, Cell>;
@@ -84,16 +74,9 @@ impl Hysteresis {
         } else {
             &mut self.extending
         };
-        let cell = Cell {
-            from: angle,
-            to: angle,
-            low: theta,
-            high: theta,
-        };
-        cells
-            .entry(bin)
-            .and_modify(|known| known.append(&cell))
-            .or_insert(cell);
+        let cell = cells.entry(bin).or_default();
+        cell.angle.add(angle);
+        cell.theta.add(theta);
         if cells.len() > Self::CAPACITY {
             self.flexing = widened(&self.flexing, 2);
             self.extending = widened(&self.extending, 2);
@@ -124,9 +107,9 @@ impl Hysteresis {
             widened(cells, factor_whole)
                 .values()
                 .map(|cell| Range {
-                    angle: 0.5 * (cell.from + cell.to),
-                    low: cell.low,
-                    high: cell.high,
+                    angle: 0.5 * (cell.angle.low + cell.angle.high),
+                    low: cell.theta.low,
+                    high: cell.theta.high,
                 })
                 .collect()
         })
@@ -147,9 +130,9 @@ fn bin_of(angle: f64, width: f64) -> i64 {
 fn widened(cells: &Cells, factor: i64) -> Cells {
     let mut wide = Cells::new();
     for (bin, cell) in cells {
-        wide.entry(bin.div_euclid(factor))
-            .and_modify(|known: &mut Cell| known.append(cell))
-            .or_insert(*cell);
+        let known = wide.entry(bin.div_euclid(factor)).or_default();
+        known.angle.join(cell.angle);
+        known.theta.join(cell.theta);
     }
     wide
 }

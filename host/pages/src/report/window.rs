@@ -2,6 +2,7 @@
 //! memory: lines, the phases with their edges at event times, the events.
 
 use crepitus_model::{EventKind, Phase};
+use crepitus_plant::Extremes;
 use crepitus_scene::trace::EventRecord;
 
 use crate::plot::Thinned;
@@ -25,8 +26,8 @@ pub(crate) struct Window {
     pub(crate) motor: Thinned,
     pub(crate) hand_fast: Thinned,
     pub(crate) orbit: Orbit,
-    pub(crate) start: f64,
-    pub(crate) end: f64,
+    /// Times of its first and last row or event.
+    pub(crate) time: Extremes<f64>,
     events: Vec<EventRecord>,
     /// No phase: the object is off.
     changes: Vec<(f64, Option<Phase>)>,
@@ -49,8 +50,7 @@ impl Window {
             motor: Thinned::new(Self::LINE),
             hand_fast: Thinned::new(Self::LINE),
             orbit: Orbit::new(),
-            start: f64::INFINITY,
-            end: f64::NEG_INFINITY,
+            time: Extremes::default(),
             events: Vec::new(),
             changes: Vec::new(),
             overflowed: false,
@@ -60,7 +60,7 @@ impl Window {
     }
 
     pub(crate) fn row(&mut self, sample: &Sample) {
-        self.extend(sample.time);
+        self.time.add(sample.time);
         self.torque.push(sample.time, sample.torque);
         self.count_speed(sample.omega);
         if self.overflowed {
@@ -83,7 +83,7 @@ impl Window {
 
     pub(crate) fn event(&mut self, event: &EventRecord) {
         let time = event.time_s;
-        self.extend(time);
+        self.time.add(time);
         // Both sides of the jump, so that it is upright however far apart the
         // rows are.
         self.torque.push(time, event.torque_before_nm);
@@ -104,11 +104,6 @@ impl Window {
         }
         self.events.push(*event);
         self.change(time, Some(Phase::from_sign(event.to)));
-    }
-
-    fn extend(&mut self, time: f64) {
-        self.start = self.start.min(time);
-        self.end = self.end.max(time);
     }
 
     fn count_speed(&mut self, omega: f64) {
@@ -166,7 +161,7 @@ impl Window {
             .iter()
             .skip(1)
             .map(|(time, _)| *time)
-            .chain([self.end]);
+            .chain([self.time.high]);
         self.changes
             .iter()
             .zip(ends)
@@ -185,16 +180,16 @@ impl Window {
     /// so that a long rest before or after does not squeeze them.
     pub(crate) fn view(&self) -> (f64, f64) {
         let (Some(first), Some(last)) = (self.events.first(), self.events.last()) else {
-            return (self.start, self.end);
+            return (self.time.low, self.time.high);
         };
         let cycle = (last.time_s - first.time_s) / (self.count(EventKind::Break).max(2) - 1) as f64;
         if cycle > 0.0 {
             (
-                self.start.max(first.time_s - cycle),
-                self.end.min(last.time_s + cycle),
+                self.time.low.max(first.time_s - cycle),
+                self.time.high.min(last.time_s + cycle),
             )
         } else {
-            (self.start, self.end)
+            (self.time.low, self.time.high)
         }
     }
 }

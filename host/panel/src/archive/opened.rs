@@ -228,7 +228,7 @@ fn joined(bins: &[(u64, Bin)], rows: u32, from_s: f64, to_s: f64, points: u16) -
     let from = (from / per * per).max(first);
     let to = to.min(end).max(from);
     let place = |number: u64| usize::try_from((number - from) / per).unwrap_or(usize::MAX);
-    let mut all = vec![Bin::GAP; place(to + per - 1)];
+    let mut all = vec![Bin::gap(); place(to + per - 1)];
     let skip = bins.partition_point(|(number, _)| *number < from);
     for (number, bin) in bins
         .iter()

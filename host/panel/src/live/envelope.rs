@@ -6,41 +6,12 @@
 
 use crate::live::states::mask;
 use crepitus_model::render::effects::Phases;
+use crepitus_plant::Extremes;
 use crepitus_protocol::TICKS_PER_S;
 use crepitus_protocol::state::LimitReason;
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_recording::Row;
 use std::collections::VecDeque;
-
-/// Lowest and highest value; NaN without one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
-    /// Lowest.
-    pub low: f32,
-    /// Highest.
-    pub high: f32,
-}
-
-impl Span {
-    /// Span without a value.
-    pub const NONE: Self = Self {
-        low: f32::NAN,
-        high: f32::NAN,
-    };
-
-    /// Extends it to a value; NaN is ignored.
-    pub fn take(&mut self, value: f32) {
-        // The minimum with NaN is the other value.
-        self.low = self.low.min(value);
-        self.high = self.high.max(value);
-    }
-
-    /// Extends it to another span.
-    pub fn join(&mut self, other: Self) {
-        self.take(other.low);
-        self.take(other.high);
-    }
-}
 
 /// Events and conditions in a bin, beside the effects' states.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,7 +32,7 @@ impl Marks {
     pub const LOST: u16 = 1 << 5;
     /// Rendering was late.
     pub const LATE: u16 = 1 << 6;
-    /// There is no sample: all spans are empty.
+    /// There is no sample: all extremes are empty.
     pub const GAP: u16 = 1 << 7;
 
     /// Returns the marks without those of the imaginary object's motion.
@@ -91,16 +62,16 @@ impl Marks {
 }
 
 /// Some consecutive samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bin {
     /// Torque commanded to the motor, N·m.
-    pub torque_nm: Span,
+    pub torque_nm: Extremes<f32>,
     /// Torque of the model, N·m.
-    pub model_nm: Span,
+    pub model_nm: Extremes<f32>,
     /// Speed, rad/s.
-    pub speed_rad_s: Span,
+    pub speed_rad_s: Extremes<f32>,
     /// Angle, rad.
-    pub angle_rad: Span,
+    pub angle_rad: Extremes<f32>,
     /// The [states](crate::live::STATES) that occurred.
     pub states: u32,
     /// Sticks that broke.
@@ -110,21 +81,13 @@ pub struct Bin {
 }
 
 impl Bin {
-    const EMPTY: Self = Self {
-        torque_nm: Span::NONE,
-        model_nm: Span::NONE,
-        speed_rad_s: Span::NONE,
-        angle_rad: Span::NONE,
-        states: 0,
-        breaks: 0,
-        marks: Marks(0),
-    };
-
     /// A time without samples.
-    pub const GAP: Self = Self {
-        marks: Marks(Marks::GAP),
-        ..Self::EMPTY
-    };
+    pub fn gap() -> Self {
+        Self {
+            marks: Marks(Marks::GAP),
+            ..Self::default()
+        }
+    }
 
     /// Extends it by another bin. A gap adds nothing.
     pub fn join(&mut self, other: &Self) {
@@ -177,15 +140,15 @@ impl Bins {
         let tick = (row.time_s * f64::from(TICKS_PER_S)).round() as u64;
         let number = tick / self.rows_per_bin;
         let complete = self.open.take_if(|(open, _)| *open < number);
-        let (_, bin) = self.open.get_or_insert((number, Bin::EMPTY));
+        let (_, bin) = self.open.get_or_insert_with(|| (number, Bin::default()));
         if self.last.0 != row.phases {
             self.last = (row.phases, mask(row.phases));
         }
-        bin.torque_nm.take(row.torque_nm);
-        bin.model_nm.take(row.model_torque_nm);
-        bin.speed_rad_s.take(row.omega_rad_s);
+        bin.torque_nm.add(row.torque_nm);
+        bin.model_nm.add(row.model_torque_nm);
+        bin.speed_rad_s.add(row.omega_rad_s);
         #[expect(clippy::cast_possible_truncation, reason = "a drawn angle")]
-        bin.angle_rad.take(row.angle_rad as f32);
+        bin.angle_rad.add(row.angle_rad as f32);
         bin.states |= self.last.1;
         let broke = row.flags.has(SampleFlags::BREAK);
         bin.breaks = bin.breaks.saturating_add(u16::from(broke));
@@ -241,7 +204,7 @@ impl Envelope {
                 self.ready.clear();
             }
             let gaps = gaps.min(MOST_GAPS);
-            self.ready.extend((0..gaps).map(|_| Bin::GAP));
+            self.ready.extend((0..gaps).map(|_| Bin::gap()));
             self.next = open;
         } else if is_first {
             self.next = open;
@@ -299,7 +262,7 @@ mod tests {
         envelope.take(&row(350, 2.0));
         let (first, bins) = envelope.finish();
         assert_eq!((first, bins.len()), (0, 4));
-        assert!(bins[1].torque_nm.low.is_nan() && bins[2].marks.0 == Marks::GAP);
+        assert!(bins[1].torque_nm.is_empty() && bins[2].marks.0 == Marks::GAP);
         assert_eq!(bins[3].torque_nm.low, 2.0);
     }
 

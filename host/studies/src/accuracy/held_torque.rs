@@ -35,7 +35,7 @@ use crate::accuracy::scenes::StudyScene;
 use crate::sampling::Sampling;
 use crate::true_events::TrueEvent;
 use crepitus_model::{Convention, EventKind, Real};
-use crepitus_plant::{Motion, Piece, ShaftState};
+use crepitus_plant::{Extremes, Motion, Piece, ShaftState};
 
 /// Nodes and weights of the three-point Gauss rule on (0, 1).
 const GAUSS: [(f64, f64); 3] = [
@@ -205,7 +205,7 @@ impl<'a> Path<'a> {
                 State::Stick { .. } => self.add_stick(start_s, knot_s, sum),
                 State::Slip { torque_nm } => {
                     sum.add(knot_s - start_s, torque_nm, 0.0);
-                    sum.reach(torque_nm);
+                    sum.extremes_nm.add(torque_nm);
                 }
             }
             start_s = knot_s;
@@ -246,26 +246,13 @@ impl<'a> Path<'a> {
 }
 
 /// Parts of a tick: their lengths, means and variances.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Sum {
     length_s: f64,
     mean_nm: f64,
     /// Squared distance from the mean, over time, (N·m)²·s.
     squares: f64,
-    low_nm: f64,
-    high_nm: f64,
-}
-
-impl Default for Sum {
-    fn default() -> Self {
-        Self {
-            length_s: 0.0,
-            mean_nm: 0.0,
-            squares: 0.0,
-            low_nm: f64::INFINITY,
-            high_nm: f64::NEG_INFINITY,
-        }
-    }
+    extremes_nm: Extremes<f64>,
 }
 
 impl Sum {
@@ -292,16 +279,11 @@ impl Sum {
             .sum();
         self.add(length_s, mean_nm, variance);
         for time_s in [start_s, start_s + length_s] {
-            self.reach(at_nm(time_s));
+            self.extremes_nm.add(at_nm(time_s));
         }
         for (torque_nm, _) in nodes {
-            self.reach(torque_nm);
+            self.extremes_nm.add(torque_nm);
         }
-    }
-
-    fn reach(&mut self, torque_nm: f64) {
-        self.low_nm = self.low_nm.min(torque_nm);
-        self.high_nm = self.high_nm.max(torque_nm);
     }
 
     /// The whole; `now_nm` if it has no length.
@@ -317,8 +299,8 @@ impl Sum {
         Tick {
             mean_nm: self.mean_nm,
             variance: self.squares / self.length_s,
-            low_nm: self.low_nm,
-            high_nm: self.high_nm,
+            low_nm: self.extremes_nm.low,
+            high_nm: self.extremes_nm.high,
         }
     }
 }

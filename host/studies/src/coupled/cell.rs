@@ -4,6 +4,7 @@ use super::setting::{DURATION_S, Setting, TICK_S};
 use crate::parallel::Meter;
 use crate::watcher::Cancelled;
 use crepitus_model::control::encoder::EncoderSettings;
+use crepitus_plant::Extremes;
 use crepitus_scene::run::{Observer, RunError, columns, run};
 use serde::Serialize;
 
@@ -82,9 +83,9 @@ pub(super) fn run_cell(setting: &Setting, meter: &Meter) -> Result<Option<Cell>,
         meter,
         angle,
         torque,
-        before: Span::default(),
-        last: Span::default(),
-        torque_nm: Span::default(),
+        before: Extremes::default(),
+        last: Extremes::default(),
+        torque_nm: Extremes::default(),
     };
     match run(&scene, &mut observer) {
         Ok(_) => {}
@@ -112,34 +113,14 @@ fn verdict(before_rad: f64, last_rad: f64) -> Verdict {
     }
 }
 
-/// Lowest and highest value.
-#[derive(Clone, Copy, Debug)]
-struct Span(f64, f64);
-
-impl Default for Span {
-    fn default() -> Self {
-        Self(f64::INFINITY, f64::NEG_INFINITY)
-    }
-}
-
-impl Span {
-    fn add(&mut self, x: f64) {
-        *self = Self(self.0.min(x), self.1.max(x));
-    }
-
-    fn width(&self) -> f64 {
-        self.1 - self.0
-    }
-}
-
 /// Observes the last two windows.
 struct RippleObserver<'a> {
     meter: &'a Meter,
     angle: usize,
     torque: usize,
-    before: Span,
-    last: Span,
-    torque_nm: Span,
+    before: Extremes<f64>,
+    last: Extremes<f64>,
+    torque_nm: Extremes<f64>,
 }
 
 impl Observer for RippleObserver<'_> {

@@ -9,7 +9,7 @@ use crepitus_model::control::device_limits::LimitSettings;
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::parameters::Tabled;
-use crepitus_model::render::effects::{EffectSettings, SwitchedEffects, Timing};
+use crepitus_model::render::effects::{SwitchedEffects, Timing};
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
 use crepitus_model::render::position::{Position, Sensing};
@@ -86,8 +86,7 @@ fn stages<F: Real>(scene: &Scene, timing: &Timing) -> Result<Stages<F>, Settings
         None => None,
     };
     let mut effects = SwitchedEffects::new(slew_nm, timing);
-    let none = EffectSettings::default();
-    let changes = scene.effect_settings().changes(timing, (&none, timing))?;
+    let changes = scene.effect_settings().changes_from_none(timing)?;
     effects.change(&changes, slew_nm);
     Ok(Pipeline::new(
         InputCheck::new(&InputLimits::device(step_s), F::from_f64(step_s), F::ZERO),

@@ -261,7 +261,7 @@ fn of_symptoms(criterion: &Criterion, seen: &Observation, precision: Precision) 
             if range.is_empty() {
                 return Finding::Failed(NO_TORQUE, None);
             }
-            number(range.high - range.low, *most_nm, "N·m")
+            number(range.width(), *most_nm, "N·m")
         }
         Criterion::SpringsReturn { most } => number(of.returned, *most, ""),
         Criterion::NetReturned { most_j } => number(of.net_returned_j, *most_j, "J"),

@@ -3,6 +3,7 @@
 use crate::symptoms::SymptomEvent;
 use crate::true_events::TimedEvent;
 use crepitus_model::{EventKind, Real, Sense};
+use crepitus_plant::Extremes;
 
 /// The most events that are stored; the rest is counted.
 pub(super) const MOST_KEPT: usize = 200_000;
@@ -23,9 +24,9 @@ pub(super) struct Observation {
     pub(super) above_s: Option<f64>,
     /// Largest |T|/Ts.
     pub(super) peak: f64,
-    pub(super) torque: Range,
+    pub(super) torque: Extremes<f64>,
     /// Torque from the time that the trial sets.
-    pub(super) late_torque: Range,
+    pub(super) late_torque: Extremes<f64>,
     pub(super) first_torque_nm: f64,
     pub(super) last_torque_nm: f64,
     /// The last step that changed the torque.
@@ -134,34 +135,6 @@ impl Observation {
     }
 }
 
-/// Smallest and largest of a number.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Range {
-    pub(super) low: f64,
-    pub(super) high: f64,
-}
-
-impl Range {
-    #[inline]
-    pub(super) fn add(&mut self, x: f64) {
-        self.low = self.low.min(x);
-        self.high = self.high.max(x);
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.low > self.high
-    }
-}
-
-impl Default for Range {
-    fn default() -> Self {
-        Self {
-            low: f64::INFINITY,
-            high: f64::NEG_INFINITY,
-        }
-    }
-}
-
 /// The bits of a torque in the precision it was computed in; −0 and 0 are one
 /// torque.
 #[inline]
@@ -205,7 +178,7 @@ pub(super) struct Tally {
     /// Times from break to break in one sense, s.
     pub(super) cycles: Spread,
     /// Times from break to stick, s.
-    pub(super) slips: Range,
+    pub(super) slips: Extremes<f64>,
     last_break: Option<(f64, Sense)>,
     slip_began_s: Option<f64>,
 }

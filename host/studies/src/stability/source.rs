@@ -2,12 +2,12 @@
 
 use super::guarded_joint::missing_step;
 use super::input::{Fault, Input, Rendered, Shaft};
-use crate::random::Random;
 use crate::sampling::{CHUNK_STEPS, Sampling, Walk};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::{Real, SettingsError, ShaftStep};
 use crepitus_plant::Motion;
 use crepitus_plant::encoder::Encoder;
+use fastrand::Rng;
 
 /// A source of steps.
 pub(super) trait Source<F> {
@@ -91,7 +91,7 @@ pub(super) fn source<'a, F: Real>(
                 reader: EncoderReader::new(&settings, 1.0 / rate_hz, first_count, omega)?,
                 jitter,
                 lost,
-                random: Random::new(1),
+                random: Rng::with_seed(1),
                 n: 0,
             })
         }
@@ -103,7 +103,7 @@ pub(super) fn source<'a, F: Real>(
         } => Box::new(White {
             most_rad_s,
             step_s,
-            random: Random::new(seed),
+            random: Rng::with_seed(seed),
             omega_rad_s: 0.0,
             n: 0,
             steps,
@@ -186,7 +186,7 @@ struct Counted<'a, F> {
     offset: i32,
     jitter: f64,
     lost: f64,
-    random: Random,
+    random: Rng,
     n: u64,
 }
 
@@ -196,13 +196,13 @@ impl<F: Real> Source<F> for Counted<'_, F> {
         while chunk.len() < CHUNK_STEPS && self.n < self.sampling.steps() {
             self.n += 1;
             let late = if self.jitter > 0.0 {
-                self.jitter * self.random.signed()
+                self.jitter * (2.0 * self.random.f64() - 1.0)
             } else {
                 0.0
             };
             let phi_rad = self.motion.at(self.sampling.time_s(self.n, late)).phi_rad;
             let count = self.encoder.count(phi_rad).wrapping_add(self.offset);
-            if self.lost > 0.0 && 0.5 * (1.0 + self.random.signed()) < self.lost {
+            if self.lost > 0.0 && self.random.f64() < self.lost {
                 self.reader.miss();
                 chunk.push(missing_step());
             } else {
@@ -277,10 +277,17 @@ impl<F: Real> Source<F> for Faulty<'_, F> {
 struct White {
     most_rad_s: f64,
     step_s: f64,
-    random: Random,
+    random: Rng,
     omega_rad_s: f64,
     n: u64,
     steps: u64,
+}
+
+impl White {
+    /// Uniformly distributed velocity, rad/s.
+    fn draw(&mut self) -> f64 {
+        self.most_rad_s * (2.0 * self.random.f64() - 1.0)
+    }
 }
 
 impl<F: Real> Source<F> for White {
@@ -289,10 +296,10 @@ impl<F: Real> Source<F> for White {
         while chunk.len() < CHUNK_STEPS && self.n < self.steps {
             self.n += 1;
             if self.n.is_multiple_of(4) {
-                self.omega_rad_s = self.most_rad_s * self.random.signed();
+                self.omega_rad_s = self.draw();
             }
             let from = self.omega_rad_s;
-            self.omega_rad_s = self.most_rad_s * self.random.signed();
+            self.omega_rad_s = self.draw();
             let travel = 0.5 * (from + self.omega_rad_s) * self.step_s;
             chunk.push(straight(travel, from, self.omega_rad_s));
         }

@@ -5,6 +5,7 @@ use super::{PanelData, Scale, Series, Story};
 use crate::accuracy::timing::quantile;
 use crate::effects::variant::Change;
 use crate::effects::{HandTorque, VariantTorque};
+use crepitus_plant::Extremes;
 
 /// Values outside this central share of all are peaks.
 const MIDDLE: f64 = 0.99;
@@ -69,28 +70,32 @@ fn panel(data: &HandTorque, variant: &VariantTorque) -> PanelData {
 /// Description of what goes beyond the scale, and the scale.
 fn scale(y: Scale, lines: &[&[(f64, f64)]; 2]) -> (String, Scale) {
     let [whole, middle] = [1.0, MIDDLE].map(|share| range(lines, share));
-    let size = |(low, high): (f64, f64)| high - low;
-    if size(whole) <= BEYOND * size(middle) || size(middle) <= 0.0 {
+    if whole.width() <= BEYOND * middle.width() || middle.width() <= 0.0 {
         return (String::new(), y);
     }
-    let room = 0.15 * size(middle);
-    let farthest = if -whole.0 > whole.1 { whole.0 } else { whole.1 };
+    let room = 0.15 * middle.width();
+    let farthest = if -whole.low > whole.high {
+        whole.low
+    } else {
+        whole.high
+    };
     (
         format!("; a peak of {farthest:.1} N·m goes beyond the scale")
             .replace("of -", "of \u{2212}"),
-        y.within(middle.0 - room, middle.1 + room),
+        y.within(middle.low - room, middle.high + room),
     )
 }
 
 /// Range in which this share of each line's values is.
-fn range(lines: &[&[(f64, f64)]; 2], share: f64) -> (f64, f64) {
+fn range(lines: &[&[(f64, f64)]; 2], share: f64) -> Extremes<f64> {
     let tail = (1.0 - share) / 2.0;
-    let mut range = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut range = Extremes::default();
     for line in lines.iter().filter(|line| !line.is_empty()) {
         let mut sorted: Vec<f64> = line.iter().map(|p| p.1).collect();
         sorted.sort_by(f64::total_cmp);
-        range.0 = range.0.min(quantile(&sorted, tail));
-        range.1 = range.1.max(quantile(&sorted, 1.0 - tail));
+        for end in [tail, 1.0 - tail] {
+            range.add(quantile(&sorted, end));
+        }
     }
     range
 }

@@ -1,10 +1,10 @@
 //! A motion of the hand, in degrees of the joint.
 
-use crate::random::Random;
 use crate::stability::text::{Plain, Time};
 use crepitus_plant::Motion;
 use crepitus_plant::motion::{Strokes, VelocityKnot};
 use crepitus_plant::piece::{Curve, Piece};
+use fastrand::Rng;
 use std::fmt;
 
 /// A prescribed motion of the joint.
@@ -166,12 +166,12 @@ fn wander(about_deg: f64, deg_s: f64, seed: u64) -> Motion {
     const END_S: f64 = 4.0;
     /// Rate at which it comes back to the middle, 1/s.
     const RETURN_HZ: f64 = 3.0;
-    let mut random = Random::new(seed);
+    let mut random = Rng::with_seed(seed);
     let (mut time_s, mut angle_deg, mut speed) = (0.0, about_deg, 0.0);
     let mut knots = vec![(0.0, 0.0, 0.0)];
     while time_s < END_S {
-        let length_s = 0.06 + 0.05 * random.signed();
-        let next = deg_s * random.signed() - RETURN_HZ * (angle_deg - about_deg);
+        let length_s = 0.01 + 0.1 * random.f64();
+        let next = deg_s * (2.0 * random.f64() - 1.0) - RETURN_HZ * (angle_deg - about_deg);
         angle_deg += 0.5 * (speed + next) * length_s;
         time_s += length_s;
         speed = next;
@@ -259,6 +259,7 @@ impl fmt::Display for Hand {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_plant::Extremes;
 
     #[test]
     fn motions_begin_where_they_say_and_go_on_as_fast() {
@@ -294,9 +295,7 @@ mod tests {
             seed: 1,
         };
         let angles = (0..400_u32).map(|n| at(&wander, 0.01 * f64::from(n)).0);
-        let (low, high) = angles.fold((60.0_f64, 60.0_f64), |(low, high), x| {
-            (low.min(x), high.max(x))
-        });
+        let Extremes { low, high }: Extremes<f64> = angles.collect();
         assert!(
             low < 50.0 && high > 70.0 && low > -30.0 && high < 150.0,
             "{low} {high}"

@@ -2,11 +2,11 @@
 
 use super::signals::SettledSignals;
 use super::{BAND_HZ, MOST_LAG_S};
-use crate::random::Random;
 use crepitus_model::Real;
 use crepitus_plant::effect::Part;
 use crepitus_plant::spectrum::cross::Cross;
 use crepitus_scene::Scene;
+use fastrand::Rng;
 use serde::Serialize;
 use std::fmt;
 
@@ -73,7 +73,7 @@ impl fmt::Display for Draws {
 
 /// The device as it may be, while its parameters stay those of the nominal one.
 pub(super) fn scenes(scene: &Scene, count: usize) -> Vec<Scene> {
-    let mut random = Random::new(20);
+    let mut random = Rng::with_seed(20);
     (0..count)
         .map(|_| {
             let mut scene = super::Step::Actuator.free(scene);
@@ -85,7 +85,7 @@ pub(super) fn scenes(scene: &Scene, count: usize) -> Vec<Scene> {
                 for key in names.map_or(&[][..], |(_, keys)| keys) {
                     let place = listed.effect.parameters.iter().position(|p| p.key == *key);
                     if let Some(number) = place.and_then(|i| listed.given.numbers.get_mut(i)) {
-                        *number *= 1.0 + SPREAD * (2.0 * random.unit() - 1.0);
+                        *number *= 1.0 + SPREAD * (2.0 * random.f64() - 1.0);
                     }
                 }
             }
@@ -143,8 +143,8 @@ mod tests {
     use super::*;
 
     fn kept(level: f64) -> SettledSignals {
-        let mut random = Random::new(1);
-        let acceleration: Vec<f64> = (0..40_000).map(|_| level * (random.unit() - 0.5)).collect();
+        let mut random = Rng::with_seed(1);
+        let acceleration: Vec<f64> = (0..40_000).map(|_| level * (random.f64() - 0.5)).collect();
         SettledSignals {
             step_s: 5e-5,
             torque: Vec::new(),

@@ -156,17 +156,23 @@ macro_rules! effects {
             /// # Errors
             /// [`SettingsError`] if a setting or the tick is out of range.
             pub fn laws<F: Real>(&self, timing: &Timing) -> Result<Effects<F>, SettingsError> {
+                let made = self.changes_from_none::<F>(timing)?;
                 Ok(Effects {
-                    $($effect: match &self.$effect {
-                        Some(settings) => {
-                            let made = <$effect::$law<F> as DeviceEffect<F>>::coefficients(settings, timing)?;
-                            Some(DeviceEffect::new(made))
-                        }
-                        None => None,
-                    },)*
+                    $($effect: made.$effect.flatten().map(<$effect::$law<F> as DeviceEffect<F>>::new),)*
                     tank: tank(timing),
-                    scale: Scale::new(&timing.sensing, timing.step_s),
+                    scale: made.scale,
                 })
+            }
+
+            /// Differences from no effect at all.
+            ///
+            /// # Errors
+            /// As [`Self::laws`].
+            pub fn changes_from_none<F: Real>(
+                &self,
+                timing: &Timing,
+            ) -> Result<EffectChanges<F>, SettingsError> {
+                self.changes(timing, (&Self::default(), timing))
             }
 
             /// Differences from `now`, or from how the joint is seen `now`.

@@ -147,8 +147,7 @@ fn a_line_of_the_table_is_in_everything_that_follows_from_it() {
     }
     assert_eq!(shown.added.get(SPECS.len()), None);
     // Nothing changes, or only what is another.
-    let none = EffectSettings::default();
-    let changes = settings.changes(&TIMING, (&none, &TIMING)).unwrap();
+    let changes = settings.changes_from_none(&TIMING).unwrap();
     let unchanged = settings.changes(&TIMING, (&settings, &TIMING)).unwrap();
     let mut stages = SwitchedEffects::<f32>::new(1.0, &TIMING);
     stages.change(&changes, 1.0);

@@ -61,9 +61,11 @@ pub const EFFECT: Effect = Effect {
         let [inertia_kg_m2, friction_nm, load_loss] = numbers(given);
         Box::new(Drivetrain {
             left,
-            inertia_kg_m2,
-            friction_nm,
-            load_loss,
+            gear: Gear {
+                inertia_kg_m2,
+                friction_nm,
+                load_loss,
+            },
             mode: Mode::Held,
             found: None,
             shown_nm: 0.0,
@@ -73,6 +75,25 @@ pub const EFFECT: Effect = Effect {
 };
 
 const NAME: &str = "drivetrain";
+
+/// A gear with the rotor behind it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gear {
+    /// Inertia of the rotor, kg·m².
+    pub inertia_kg_m2: f64,
+    /// Dry friction of motor and gear, N·m.
+    pub friction_nm: f64,
+    /// Share of the torque through the gear that is lost in it.
+    pub load_loss: f64,
+}
+
+impl Gear {
+    /// Dry friction under this torque through the gear, N·m: at rest the most that it carries.
+    #[inline]
+    pub fn limit_nm(&self, load_nm: f64) -> f64 {
+        self.friction_nm + self.load_loss * load_nm.abs()
+    }
+}
 
 /// Share of itself below which a falling speed counts as zero.
 const NEARLY: f64 = 1e-5;
@@ -86,9 +107,7 @@ enum Mode {
 
 struct Drivetrain {
     left: Box<dyn Chain>,
-    inertia_kg_m2: f64,
-    friction_nm: f64,
-    load_loss: f64,
+    gear: Gear,
     mode: Mode,
     /// Instant in the step at which the last check saw the rotor stop.
     found: Option<f64>,
@@ -99,12 +118,12 @@ struct Drivetrain {
 
 impl Drivetrain {
     fn limit_nm(&self, step: &Step) -> f64 {
-        self.friction_nm + self.load_loss * step.load_nm.abs()
+        self.gear.limit_nm(step.load_nm)
     }
 
     /// Torque of the rotor's inertia, N·m.
     fn inertial_nm(&self, step: &Step, body: &Body, w: f64) -> f64 {
-        step.inertial_slope(self.inertia_kg_m2) * (body.omega_rad_s - w)
+        step.inertial_slope(self.gear.inertia_kg_m2) * (body.omega_rad_s - w)
     }
 
     /// The friction on the rotor that the solution contains, N·m.
@@ -167,7 +186,7 @@ impl Chain for Drivetrain {
         let mut push = self
             .left
             .fold(step, body)
-            .with_inertia(self.inertia_kg_m2, step, body);
+            .with_inertia(self.gear.inertia_kg_m2, step, body);
         match self.mode {
             Mode::Held => push.held_by_nm = Some(self.limit_nm(step)),
             Mode::Sliding(sense) => push.torque_nm -= sense.of_signed(self.limit_nm(step)),
@@ -224,11 +243,11 @@ impl Chain for Drivetrain {
     }
 
     fn inertia_kg_m2(&self) -> f64 {
-        self.inertia_kg_m2 + self.left.inertia_kg_m2()
+        self.gear.inertia_kg_m2 + self.left.inertia_kg_m2()
     }
 
     fn attach(&mut self, right_kg_m2: f64) {
-        self.left.attach(right_kg_m2 + self.inertia_kg_m2);
+        self.left.attach(right_kg_m2 + self.gear.inertia_kg_m2);
     }
 
     fn jerk(&mut self, body: &Body, change_rad_s: f64) {
@@ -241,7 +260,7 @@ impl Chain for Drivetrain {
 
     fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
         self.left.energy(body, balance);
-        let kinetic_j = 0.5 * self.inertia_kg_m2 * body.omega_rad_s * body.omega_rad_s;
+        let kinetic_j = 0.5 * self.gear.inertia_kg_m2 * body.omega_rad_s * body.omega_rad_s;
         balance.add(NAME, "rotor", Account::Stored, kinetic_j);
         balance.add(NAME, "friction", Account::Lost, self.lost_j);
     }

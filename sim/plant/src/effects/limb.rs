@@ -122,8 +122,8 @@ pub const EFFECT: Effect = Effect {
 
 const NAME: &str = "limb";
 
-/// m/s².
-pub(crate) const STANDARD_GRAVITY: f64 = 9.806_65;
+/// Standard gravity, m/s².
+pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
 /// Angle to add to φ so that weight on a leg like `given` is a cosine, rad.
 pub fn gravity_rad(given: &Given) -> f64 {

@@ -24,8 +24,12 @@
 //! The actuator sits on the [shell](super::shell) if there is one, otherwise on what the hand
 //! holds; or on the brace, where it does next to nothing for the hand.
 //!
+//! A fit takes the coil on a carrier that stands still as an [`impedance`].
+//!
 //! Sources: see [`vibration_actuator`](crepitus_model::render::effects::vibration_actuator),
 //! inductance of the same data sheet; bumpers are an estimate.
+
+pub mod impedance;
 
 use crate::chain::{Body, Chain, Push, Step, Weight};
 use crate::coil::Coil;

@@ -2,6 +2,7 @@
 //! tables that have no angles.
 
 use super::{AngleUnit, Angles, Place, Source, Warning};
+use crate::Extremes;
 
 /// Angles of a joint that are believed without a word, in deg.
 pub const JOINT_DEG: std::ops::RangeInclusive<f64> = -30.0..=180.0;
@@ -135,13 +136,13 @@ impl Readings<'_> {
     fn range(&self) -> Option<Warning> {
         let beyond = |deg: f64| (deg - JOINT_DEG.end()).max(JOINT_DEG.start() - deg);
         let (mut count, mut farthest) = (0, None);
-        let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut extremes = Extremes::default();
         for (index, number) in self.number.iter().enumerate() {
             if is_mark(*number) {
                 continue;
             }
             let deg = self.joint_deg(*number);
-            (lowest, highest) = (lowest.min(deg), highest.max(deg));
+            extremes.add(deg);
             if beyond(deg) > 0.0 {
                 count += 1;
                 if farthest.is_none_or(|(_, most)| beyond(deg) > beyond(most)) {
@@ -150,9 +151,10 @@ impl Readings<'_> {
             }
         }
         let (index, deg) = farthest?;
-        let advice = if self.unit == AngleUnit::Rad && highest.abs().max(lowest.abs()) > 360.0 {
+        let Extremes { low, high } = extremes;
+        let advice = if self.unit == AngleUnit::Rad && high.abs().max(low.abs()) > 360.0 {
             "; if the file is in degrees, write unit = \"deg\""
-        } else if JOINT_DEG.contains(&-lowest) && JOINT_DEG.contains(&-highest) {
+        } else if JOINT_DEG.contains(&-low) && JOINT_DEG.contains(&-high) {
             "; where the file counts flexion as negative, write sign = -1"
         } else {
             "; check the column, the unit and offset_deg"

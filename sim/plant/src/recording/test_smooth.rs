@@ -1,6 +1,7 @@
 //! The spline against its transfer function, and its continuity.
 
 use super::{CubicSegment, RecordingError, Samples, acceleration_ripple_rad_s2, smooth};
+use fastrand::Rng;
 use std::f64::consts::{PI, TAU};
 
 fn samples(time_s: Vec<f64>, angle: impl Fn(f64) -> f64) -> Samples {
@@ -19,25 +20,14 @@ fn regular(rate_hz: f64, duration_s: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Uniform in [0, 1), the same in every run.
-fn noise() -> impl FnMut() -> f64 {
-    let mut state = 1_u64;
-    move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        f64::from(u32::try_from(state >> 33).unwrap()) / f64::from(1_u32 << 31)
-    }
-}
-
 /// Every interval changed by up to ±`share`.
 fn jittered(rate_hz: f64, duration_s: f64, share: f64) -> Vec<f64> {
-    let mut random = noise();
+    let mut random = Rng::with_seed(1);
     let mut time_s = vec![0.0];
     while let Some(&t) = time_s.last()
         && t < duration_s
     {
-        time_s.push(t + (1.0 + share * (2.0 * random() - 1.0)) / rate_hz);
+        time_s.push(t + (1.0 + share * (2.0 * random.f64() - 1.0)) / rate_hz);
     }
     time_s
 }
@@ -148,11 +138,11 @@ pub(super) fn jumps(segments: &[CubicSegment]) -> [f64; 3] {
 
 #[test]
 fn angle_velocity_and_acceleration_are_continuous() {
-    let mut random = noise();
+    let mut random = Rng::with_seed(1);
     let mut noisy = |time_s: Vec<f64>| {
         let angle_rad = time_s
             .iter()
-            .map(|t| (1.0 - (TAU * t).cos()) / 2.0 + 0.01 * random())
+            .map(|t| (1.0 - (TAU * t).cos()) / 2.0 + 0.01 * random.f64())
             .collect();
         Samples {
             time_s,
@@ -265,14 +255,14 @@ fn samples_that_break_their_promises_are_refused() {
 
 #[test]
 fn odd_spacing_does_not_break_the_solver() {
-    let mut random = noise();
+    let mut random = Rng::with_seed(1);
     for round in 0..200 {
         let mut time_s = vec![0.0];
         for _ in 0..(4 + round) {
-            let step_s = 10_f64.powf(6.0 * random() - 6.0);
+            let step_s = 10_f64.powf(6.0 * random.f64() - 6.0);
             time_s.push(time_s.last().unwrap() + step_s);
         }
-        let angle_rad = time_s.iter().map(|_| random()).collect();
+        let angle_rad = time_s.iter().map(|_| random.f64()).collect();
         let recording = Samples {
             time_s,
             angle_rad,

@@ -1,6 +1,7 @@
 //! Units of angles and of times, and which one counts where a file and a person differ.
 
 use super::{Angles, Place, RecordingError, Source, Warning};
+use crate::Extremes;
 use crepitus_files::table::Table;
 use std::fmt;
 use std::io::Read;
@@ -189,11 +190,10 @@ pub(super) struct Spread {
 
 impl Spread {
     pub(super) fn of(numbers: &[f64]) -> Self {
-        let lowest = numbers.iter().copied().fold(f64::INFINITY, f64::min);
-        let highest = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let extremes: Extremes<f64> = numbers.iter().copied().collect();
         Self {
-            largest: highest.abs().max(lowest.abs()),
-            range: highest - lowest,
+            largest: extremes.high.abs().max(extremes.low.abs()),
+            range: extremes.width(),
         }
     }
 

@@ -155,13 +155,12 @@ impl Cross {
 mod tests {
     use super::*;
 
-    /// Numerical Recipes' quick generator, smoothed.
+    /// White noise, smoothed.
     fn noise(count: usize) -> Vec<f64> {
-        let (mut x, mut y) = (1_u32, 0.0);
+        let (mut random, mut y) = (fastrand::Rng::with_seed(1), 0.0);
         (0..count)
             .map(|_| {
-                x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                y += 0.1 * (f64::from(x) / 4_294_967_296.0 - 0.5 - y);
+                y += 0.1 * (random.f64() - 0.5 - y);
                 y
             })
             .collect()

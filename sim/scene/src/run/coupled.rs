@@ -5,6 +5,7 @@ use super::device::{Device, Happened, Span, device};
 use super::held_back::Beyond;
 use super::stages;
 use super::stepping::{CHECK_STEPS, PROGRESS_STEPS};
+use super::tally::TorqueTally;
 use super::watch::{Ended, Stopped, Watch};
 use super::{Diverged, RunError, Totals, steps};
 use crate::any_joint::Precise;
@@ -23,8 +24,8 @@ pub(super) struct PlantTotals {
     pub(super) balance: EnergyBalance,
     /// Sources of the work of the rendered torque.
     pub(super) rendering: Rendering,
-    /// Torque at the hand; `None` for a released leg.
-    pub(super) felt: Option<Felt>,
+    /// Torque at the hand, mean of each tick, without impacts; `None` for a released leg.
+    pub(super) felt: Option<TorqueTally>,
     /// The impacts, if a part of the plant can have any.
     pub(super) impacts: Option<Impacts>,
     /// The largest impulse of impacts that the hand felt in a tick, N·m·s.
@@ -42,33 +43,6 @@ pub(super) struct Rendering {
     pub(super) limits: Option<f64>,
     /// Work of the torque that there was.
     pub(super) absorbed: f64,
-}
-
-/// The torque that the hand feels, mean of each tick, without impacts.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Felt {
-    pub(super) min_nm: f64,
-    pub(super) max_nm: f64,
-    pub(super) sum: f64,
-    pub(super) squares: f64,
-}
-
-impl Felt {
-    fn new() -> Self {
-        Self {
-            min_nm: f64::INFINITY,
-            max_nm: f64::NEG_INFINITY,
-            sum: 0.0,
-            squares: 0.0,
-        }
-    }
-
-    fn note(&mut self, torque_nm: f64) {
-        self.min_nm = self.min_nm.min(torque_nm);
-        self.max_nm = self.max_nm.max(torque_nm);
-        self.sum += torque_nm;
-        self.squares += torque_nm * torque_nm;
-    }
 }
 
 /// The name of the column of what the hand feels: a scene with a plant has it
@@ -178,7 +152,7 @@ impl Run {
         let parts = scene.substeps;
         let mut walk = Walk::new(&scene.motion, self.tick_s / f64::from(parts)).in_parts::<F>();
         let is_felt = scene.is_held();
-        let mut felt = Felt::new();
+        let mut felt = TorqueTally::default();
         let mut felt_nm = self.first_felt_nm;
         let has_impacts = self.plant.impacts().is_some();
         let (mut struck_nms, mut most_struck_nms) = (0.0, 0.0_f64);
@@ -225,7 +199,7 @@ impl Run {
             struck_nms = self.plant.struck_nms() - struck_before;
             most_struck_nms = most_struck_nms.max(struck_nms.abs());
             felt_nm = (self.plant.felt_nms() - felt_before - struck_nms) / self.tick_s;
-            felt.note(felt_nm);
+            felt.add(felt_nm);
             let turned = after.angle_rad - before.angle_rad;
             held += model_nm * turned;
             limited += taken_nm * turned;

@@ -56,7 +56,8 @@ pub(super) fn drive<F: Real, S: Symptom<F>>(
     let slew_nm = F::from_f64(limits.slew_nm_per_s * step_s);
     let timing = scene.timing(step_s, MOST_DELAY_TICKS);
     let mut effects = SwitchedEffects::new(slew_nm, &timing);
-    effects.change(&scene.changes(&timing)?, slew_nm);
+    let changes = scene.effect_settings().changes_from_none(&timing)?;
+    effects.change(&changes, slew_nm);
     Ok(Pipeline::new(
         InputCheck::new(&InputLimits::device(step_s), F::from_f64(step_s), F::ZERO),
         symptoms,

@@ -343,12 +343,7 @@ pub(super) fn summarise(scene: &Scene, totals: &Totals, wall_s: f64) -> Summary 
             reverses: t.events[2],
         }),
         cycles: tally.map(|t| cycles(t, totals.crowded_steps > 0)),
-        torque: tally.map(|t| TorqueSummary {
-            min_nm: t.torque.min_nm,
-            mean_nm: t.torque.integral / totals.end_s,
-            max_nm: t.torque.max_nm,
-            rms_nm: (t.torque.square / totals.end_s).sqrt(),
-        }),
+        torque: tally.map(|t| t.torque.summary(totals.end_s)),
         energy: tally.map(|t| EnergySummary {
             work_in_j: t.energy.work_in_j,
             convention_j: t.energy.convention_j,

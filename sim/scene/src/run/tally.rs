@@ -13,20 +13,41 @@
 //! `frozen` also the reset at the end of a slip, and with Ts = Tk where it goes on instead; behind
 //! a device also what it does while it refuses samples. `residual` is what numerical error leaves.
 
+use super::TorqueSummary;
 use super::energy::Energy;
 use super::lead::Lead;
 use crepitus_model::joint::oscillator::Oscillator;
 use crepitus_model::{Convention, Event, EventKind, Phase, Sense, Settings};
+use crepitus_plant::Extremes;
 
-/// Extremes, mean and root mean square of the torque over time.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct TorqueTally {
-    pub(super) min_nm: f64,
-    pub(super) max_nm: f64,
-    /// ∫T dt, N·m·s.
-    pub(super) integral: f64,
-    /// ∫T² dt, N²·m²·s.
-    pub(super) square: f64,
+/// Extremes, mean and root mean square of a torque, over time or over samples.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TorqueTally {
+    extremes_nm: Extremes<f64>,
+    /// ∫T dt, N·m·s, or the sum of samples, N·m.
+    integral: f64,
+    /// ∫T² dt, N²·m²·s, or the sum of squares, N²·m².
+    square: f64,
+}
+
+impl TorqueTally {
+    /// Adds a sample.
+    #[inline]
+    pub fn add(&mut self, torque_nm: f64) {
+        self.extremes_nm.add(torque_nm);
+        self.integral += torque_nm;
+        self.square += torque_nm * torque_nm;
+    }
+
+    /// Returns the summary over `whole`: the time, s, or the number of samples.
+    pub fn summary(&self, whole: f64) -> TorqueSummary {
+        TorqueSummary {
+            min_nm: self.extremes_nm.low,
+            mean_nm: self.integral / whole,
+            max_nm: self.extremes_nm.high,
+            rms_nm: (self.square / whole).sqrt(),
+        }
+    }
 }
 
 /// Cycles: break to break in the same sense with one stick between.
@@ -34,8 +55,7 @@ pub(super) struct TorqueTally {
 pub(super) struct Cycles {
     pub(super) count: u64,
     pub(super) total_s: f64,
-    pub(super) shortest_s: f64,
-    pub(super) longest_s: f64,
+    pub(super) length_s: Extremes<f64>,
     last_break: Option<(f64, Sense)>,
 }
 
@@ -117,12 +137,7 @@ impl Tally {
             },
             events: [0; 3],
             cycles: Cycles::default(),
-            torque: TorqueTally {
-                min_nm: f64::INFINITY,
-                max_nm: f64::NEG_INFINITY,
-                integral: 0.0,
-                square: 0.0,
-            },
+            torque: TorqueTally::default(),
             energy: Energy::new(&settings.parameters, omega_rad_s),
             lead,
             goes_on: touches && settings.convention == Convention::Frozen,
@@ -133,16 +148,15 @@ impl Tally {
     /// Notes a torque that was shown.
     #[inline]
     pub(super) fn shown(&mut self, torque_nm: f64) {
-        self.torque.min_nm = self.torque.min_nm.min(torque_nm);
-        self.torque.max_nm = self.torque.max_nm.max(torque_nm);
+        self.torque.extremes_nm.add(torque_nm);
     }
 
     /// Notes a torque that was computed again, unless it is beyond the others by rounding only.
     #[inline]
     fn shown_again(&mut self, torque_nm: f64) {
-        let TorqueTally { min_nm, max_nm, .. } = self.torque;
-        let rounding_nm = 1e-6 * (torque_nm.abs() + max_nm.max(-min_nm));
-        let known = min_nm - rounding_nm..=max_nm + rounding_nm;
+        let Extremes { low, high } = self.torque.extremes_nm;
+        let rounding_nm = 1e-6 * (torque_nm.abs() + high.max(-low));
+        let known = low - rounding_nm..=high + rounding_nm;
         if !known.contains(&torque_nm) && torque_nm.is_finite() {
             self.shown(torque_nm);
         }
@@ -345,12 +359,7 @@ impl Cycles {
                     && last_sense == sense
                 {
                     let length_s = time_s - last_s;
-                    self.shortest_s = if self.count == 0 {
-                        length_s
-                    } else {
-                        self.shortest_s.min(length_s)
-                    };
-                    self.longest_s = self.longest_s.max(length_s);
+                    self.length_s.add(length_s);
                     self.count += 1;
                     self.total_s += length_s;
                 }

@@ -5,7 +5,7 @@ use crate::effects::effect_settings;
 use crate::error::SceneError;
 use crate::scene::Scene;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
-use crepitus_model::render::effects::{EffectChanges, EffectSettings, Effects, Timing};
+use crepitus_model::render::effects::{EffectSettings, Effects, Timing};
 use crepitus_model::render::position::Sensing;
 use crepitus_model::{Real, SettingsError};
 use crepitus_plant::assembly::Listed;
@@ -19,15 +19,6 @@ impl Scene {
     ) -> Result<Effects<F>, SettingsError> {
         self.effect_settings()
             .laws(&self.timing(step_s, delay_ticks))
-    }
-
-    /// Changes that make a device without effects render those that the scene lists.
-    pub(crate) fn changes<F: Real>(
-        &self,
-        timing: &Timing,
-    ) -> Result<EffectChanges<F>, SettingsError> {
-        let none = EffectSettings::default();
-        self.effect_settings().changes(timing, (&none, timing))
     }
 
     /// Settings of the device's effects that it lists.

@@ -1,5 +1,6 @@
 //! Runs of a symptom's scene in three ways, and what is read off them.
 
+use crepitus_plant::Extremes;
 use crepitus_scene::run::columns;
 use crepitus_scene::trace::SymptomEvent;
 use crepitus_scene::{Observer, Overrides, Scene, run};
@@ -147,9 +148,8 @@ impl PromiseRun {
             .rows
             .iter()
             .filter(|row| (from_s..to_s).contains(&row[0]));
-        rows.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), row| {
-            (low.min(row[place]), high.max(row[place]))
-        })
+        let Extremes { low, high }: Extremes<f64> = rows.map(|row| row[place]).collect();
+        (low, high)
     }
 
     /// A column at a time, linear between rows.

@@ -1,5 +1,6 @@
 //! Random motions and parameters of a symptom, as text of a scene.
 
+use fastrand::Rng;
 use std::fmt::Write;
 
 pub(crate) const TICK_S: f64 = 5e-5;
@@ -12,36 +13,24 @@ pub(crate) struct Tolerance {
 }
 
 /// Numbers that look random.
-pub(crate) struct Random(u64);
+pub(crate) struct Random(Rng);
 
 impl Random {
     pub(crate) fn new(seed: u64, name: &str, form: &str) -> Self {
         let letters = name.bytes().chain(form.bytes());
-        Self(
-            letters.fold(seed.wrapping_mul(0x1234_5678_9ABC_DEF1), |sum, byte| {
-                sum.wrapping_mul(31).wrapping_add(u64::from(byte))
-            }),
-        )
-    }
-
-    fn share(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        x ^= x >> 31;
-        #[expect(clippy::cast_precision_loss, reason = "53 bits")]
-        let share = (x >> 11) as f64 / (1_u64 << 53) as f64;
-        share
+        let seed = letters.fold(seed.wrapping_mul(0x1234_5678_9ABC_DEF1), |sum, byte| {
+            sum.wrapping_mul(31).wrapping_add(u64::from(byte))
+        });
+        Self(Rng::with_seed(seed))
     }
 
     fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.share()
+        low + (high - low) * self.0.f64()
     }
 
     /// Now and then an end of the range.
     fn within(&mut self, low: f64, high: f64) -> f64 {
-        match self.share() {
+        match self.0.f64() {
             x if x < 0.06 => low,
             x if x > 0.94 => high,
             _ => self.between(low, high),
@@ -49,7 +38,7 @@ impl Random {
     }
 
     fn happens(&mut self, share: f64) -> bool {
-        self.share() < share
+        self.0.f64() < share
     }
 }
 
@@ -58,7 +47,7 @@ impl Random {
 pub(crate) fn motion(random: &mut Random, end_s: f64, jumps: f64) -> String {
     let mut text = String::from("[motion]\n");
     let middle = random.between(30.0, 90.0);
-    match random.share() {
+    match random.0.f64() {
         x if x < 0.2 => {
             let _ = write!(
                 text,

@@ -1,23 +1,22 @@
-//! `crepitus-faults`: plants the faults of `tools/faults` one at a time, and says which test
+//! `crepitus-faults`: plants the faults of `tools/faults` one at a time, and records which test
 //! notices each.
 
 mod mutants_run;
 
 use clap::Parser;
-use crepitus_tools::faults::outcome::Outcome;
 use crepitus_tools::faults::patch::Fault;
 use crepitus_tools::faults::trial::Workshop;
-use crepitus_tools::faults::{page, patch, tree};
+use crepitus_tools::faults::{page, patch};
 use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Plants faults in a copy of the sources and reports the tests that detect them.
+/// Plants faults in a copy of the sources, and records in their patches which tests detect them.
 #[derive(Parser)]
 #[command(
     after_help = "Example: cargo run -p crepitus-tools --bin crepitus-faults -- period-in-f32\n\n\
-    CREPITUS_CARGO names the cargo that builds the copy. A run that was interrupted goes on where it ended."
+    CREPITUS_CARGO names the cargo that builds the copy. After a run that was interrupted, --missing tries the rest."
 )]
 struct Arguments {
     /// Try only these faults.
@@ -26,14 +25,14 @@ struct Arguments {
     /// Try only the faults of this folder of tools/faults.
     #[arg(long, value_name = "AREA")]
     area: Option<String>,
+    /// Try only faults without a result, or whose patch has changed since.
+    #[arg(long)]
+    missing: bool,
     /// List the faults and exit.
     #[arg(long)]
     list: bool,
-    /// Write the page of all faults here.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["names", "area"])]
-    page: Option<PathBuf>,
     /// Try every mutant that `cargo mutants` lists of this crate: model, device or protocol.
-    #[arg(long, value_name = "CRATE", conflicts_with_all = ["names", "area", "list", "page"])]
+    #[arg(long, value_name = "CRATE", conflicts_with_all = ["names", "area", "missing", "list"])]
     mutants: Option<String>,
     /// Arguments of `cargo test` for the tests that are to notice mutants, instead of the
     /// crate's own and those that compare with it; may be given several times.
@@ -47,7 +46,7 @@ struct Arguments {
     /// Root of the repository.
     #[arg(long, value_name = "DIR", default_value = ".")]
     root: PathBuf,
-    /// Scratch folder: the copy, its build, results so far.
+    /// Scratch folder: the copy, its build, results of mutants so far.
     #[arg(long, value_name = "DIR", default_value = "target/faults")]
     scratch: PathBuf,
 }
@@ -77,60 +76,49 @@ fn work(arguments: &Arguments) -> Result<ExitCode, Box<dyn Error>> {
         (names.is_empty() || names.contains(&fault.name))
             && area.is_none_or(|area| fault.area == *area)
     };
-    let wanted: Vec<Fault> = all.into_iter().filter(is_wanted).collect();
+    let mut wanted: Vec<Fault> = all.into_iter().filter(is_wanted).collect();
     if wanted.is_empty() {
         eprintln!("crepitus-faults: there is no such fault; --list shows all");
         return Ok(ExitCode::from(2));
     }
+    wanted.retain(|fault| !arguments.missing || fault.result.is_none());
     if arguments.list {
         for fault in &wanted {
             println!("{:10} {:34} {}", fault.area, fault.name, fault.what);
         }
         return Ok(ExitCode::SUCCESS);
     }
-    let tried = try_all(arguments, wanted)?;
-    println!("{}", page::totals(&tried));
-    if let Some(file) = &arguments.page {
-        std::fs::write(file, page::page(&tried))?;
-        println!("wrote {}", file.display());
-    }
-    Ok(if tried.iter().any(page::is_hole) {
+    let has_holes = !wanted.is_empty() && try_all(arguments, wanted)?;
+    let file = arguments.root.join(page::FILE);
+    std::fs::write(&file, page::page(&patch::all(&arguments.root)?))?;
+    println!("wrote {}", file.display());
+    Ok(if has_holes {
         ExitCode::FAILURE
     } else {
         ExitCode::SUCCESS
     })
 }
 
-/// Tries the faults that have no result yet, and prints a line a fault.
-fn try_all(arguments: &Arguments, faults: Vec<Fault>) -> Result<Vec<page::Tried>, Box<dyn Error>> {
-    let known = arguments.scratch.join("known");
-    std::fs::create_dir_all(&known)?;
-    let sources = tree::fingerprint(&arguments.root)?;
-    let load = |fault: &Fault| Outcome::load(&known, &fault.name, fault.fingerprint(sources));
+/// Tries faults, records their results and prints a line a fault. Returns whether one is a hole.
+fn try_all(arguments: &Arguments, mut faults: Vec<Fault>) -> Result<bool, Box<dyn Error>> {
     let cargo = std::env::var("CREPITUS_CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let mut workshop = Workshop::open(&arguments.root, &arguments.scratch, &cargo)?;
+    // A package is built again after each of its faults: together with the next one, if that is in
+    // the same package.
+    faults.sort_by(|a, b| a.changed_files().cmp(b.changed_files()));
     eprintln!("without a fault all tests must pass");
-    for fault in faults.iter().filter(|fault| load(fault).is_none()) {
+    for fault in &faults {
         workshop.baseline(fault)?;
     }
-    let (mut tried, all) = (Vec::new(), faults.len());
-    for (number, fault) in (1..).zip(faults) {
-        let outcome = if let Some(outcome) = load(&fault) {
-            outcome
-        } else {
-            let begun = Instant::now();
-            let outcome = workshop.attempt(&fault)?;
-            // A build may fail for other reasons, too.
-            if outcome != Outcome::DoesNotBuild {
-                outcome.save(&known, &fault.name, fault.fingerprint(sources))?;
-            }
-            let took = begun.elapsed().as_secs();
-            eprintln!("{number:3}/{all} {} ({took} s)", fault.name);
-            outcome
-        };
-        let result = (fault, outcome);
-        println!("{}", page::line(&result));
-        tried.push(result);
+    let (mut has_holes, all) = (false, faults.len());
+    for (number, mut fault) in (1..).zip(faults) {
+        let begun = Instant::now();
+        fault.result = workshop.attempt(&fault)?;
+        fault.record(&arguments.root)?;
+        let took = begun.elapsed().as_secs();
+        eprintln!("{number:3}/{all} {} ({took} s)", fault.name);
+        println!("{}", page::line(&fault));
+        has_holes |= page::is_hole(&fault);
     }
-    Ok(tried)
+    Ok(has_holes)
 }

@@ -3,8 +3,9 @@
 use crate::cli::{above_zero, tolerance};
 use crate::failure::Failure;
 use clap::Args;
-use crepitus_identify::brace::{GRAVITY, Weight};
+use crepitus_identify::brace::Weight;
 use crepitus_identify::{DEVIATIONS, Estimate};
+use crepitus_plant::effects::limb::STANDARD_GRAVITY;
 
 /// The weight.
 #[derive(Debug, Args)]
@@ -49,7 +50,7 @@ impl Known {
 
     /// Torque about the axis when it is horizontal, N·m.
     pub(super) fn moment_nm(&self) -> Estimate {
-        let value = self.kg * GRAVITY * self.lever_m;
+        let value = self.kg * STANDARD_GRAVITY * self.lever_m;
         Estimate {
             value,
             half_width: value * self.share,

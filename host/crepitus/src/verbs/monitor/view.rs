@@ -2,7 +2,8 @@
 
 use crepitus_client::Accounting;
 use crepitus_client::connection::device_text;
-use crepitus_panel::live::{Aim, Bin, Marks, Pace, STATES, Span as Extremes, Verdict};
+use crepitus_panel::live::{Aim, Bin, Marks, Pace, STATES, Verdict};
+use crepitus_plant::Extremes;
 use crepitus_protocol::State;
 use crepitus_protocol::host::Status;
 use ratatui::Frame;
@@ -194,7 +195,7 @@ impl View {
                 states.push(name.to_owned());
             }
         }
-        let middle = |span: Extremes| f64::from(f32::midpoint(span.low, span.high));
+        let middle = |of: Extremes<f32>| f64::from(f32::midpoint(of.low, of.high));
         Line::from(format!(
             "{:7.1} °  {:7.0} °/s  {:+7.3} N·m   {}",
             middle(bin.angle_rad).to_degrees(),
@@ -253,7 +254,7 @@ impl View {
         frame: &mut Frame<'_>,
         area: Rect,
         title: &str,
-        of: impl Fn(&Bin) -> Extremes,
+        of: impl Fn(&Bin) -> Extremes<f32>,
         scale: f64,
         band: Option<(f64, Option<f64>)>,
     ) {
@@ -304,7 +305,7 @@ impl View {
                 let mut x = end_s;
                 for span in spans.iter().rev() {
                     x -= self.bin_s;
-                    if span.low.is_nan() {
+                    if span.is_empty() {
                         continue;
                     }
                     context.draw(&Stroke {

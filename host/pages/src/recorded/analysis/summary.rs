@@ -8,7 +8,7 @@ use crepitus_recording::History;
 use crepitus_recording::Row;
 use crepitus_recording::Totals;
 use crepitus_recording::{Recording, seconds};
-use crepitus_scene::run::TorqueSummary;
+use crepitus_scene::run::{TorqueSummary, TorqueTally};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -69,55 +69,16 @@ pub struct RecordingSummary {
     pub warnings: Vec<String>,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Sum {
-    count: u64,
-    min: f64,
-    max: f64,
-    total: f64,
-    squares: f64,
-}
-
-impl Default for Sum {
-    fn default() -> Self {
-        Self {
-            count: 0,
-            min: f64::INFINITY,
-            max: f64::NEG_INFINITY,
-            total: 0.0,
-            squares: 0.0,
-        }
-    }
-}
-
-impl Sum {
-    fn add(&mut self, x: f64) {
-        self.count += 1;
-        self.min = self.min.min(x);
-        self.max = self.max.max(x);
-        self.total += x;
-        self.squares += x * x;
-    }
-
-    fn torque(&self) -> Option<TorqueSummary> {
-        let count = seconds(self.count) / TICK_S;
-        (self.count > 0).then(|| TorqueSummary {
-            min_nm: self.min,
-            mean_nm: self.total / count,
-            max_nm: self.max,
-            rms_nm: (self.squares / count).sqrt(),
-        })
-    }
-}
-
 /// Running totals of rows.
 #[derive(Debug, Default)]
 pub(super) struct Tally {
     rows: u64,
     /// Times of the first and the last row, s.
     ends_s: Option<(f64, f64)>,
-    armed: Sum,
-    asked: Sum,
+    armed_rows: u64,
+    /// Torques of the armed rows: of the model, and commanded.
+    model: TorqueTally,
+    commanded: TorqueTally,
     breaks: u64,
     sticks: u64,
     fastest_rad_s: f64,
@@ -140,8 +101,9 @@ impl Tally {
         }
         self.breaks += u64::from(flags.has(SampleFlags::BREAK));
         self.sticks += u64::from(flags.has(SampleFlags::STICK));
-        self.armed.add(f64::from(row.model_torque_nm));
-        self.asked.add(f64::from(row.torque_nm));
+        self.armed_rows += 1;
+        self.model.add(f64::from(row.model_torque_nm));
+        self.commanded.add(f64::from(row.torque_nm));
         if flags.limit() != LimitReason::None {
             *self.limited.entry(flags.limit().name()).or_default() += 1;
         }
@@ -160,9 +122,12 @@ impl Tally {
                 .map(|difference| format!("Counted in its rows: {difference}.")),
         );
         warnings.extend(restarts(books.drive_restarts));
-        if self.armed.count == 0 && self.rows > 0 {
+        if self.armed_rows == 0 && self.rows > 0 {
             warnings.push("The device was never armed, so there was no torque.".to_owned());
         }
+        let torque = |tally: TorqueTally| {
+            (self.armed_rows > 0).then(|| tally.summary(seconds(self.armed_rows) / TICK_S))
+        };
         RecordingSummary {
             id: metadata.id.clone(),
             title: metadata.title.clone(),
@@ -177,15 +142,15 @@ impl Tally {
             span_s: self
                 .ends_s
                 .map_or(0.0, |(first_s, last_s)| last_s - first_s + TICK_S),
-            armed_s: seconds(self.armed.count),
+            armed_s: seconds(self.armed_rows),
             telemetry: books.totals,
             gaps: books.gap_count,
             drive_restarts: books.drive_restarts,
             breaks: self.breaks,
             sticks: self.sticks,
             fastest_rad_s: self.fastest_rad_s,
-            model_torque: self.armed.torque(),
-            torque: self.asked.torque(),
+            model_torque: torque(self.model),
+            torque: torque(self.commanded),
             limited_s: self
                 .limited
                 .into_iter()

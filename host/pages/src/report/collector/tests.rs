@@ -111,7 +111,7 @@ fn no_phase_window_or_spectrum_reaches_across_a_gap() {
     };
     let spans = |figures: &Figures, gap: &Range<f64>| {
         let window = figures.onset.as_ref().expect("a window");
-        window.start < gap.start && window.end > gap.end
+        window.time.low < gap.start && window.time.high > gap.end
     };
     let gap = 4.0..6.0;
     let (with, without) = (collect(&gap, true), collect(&gap, false));

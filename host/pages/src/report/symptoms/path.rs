@@ -173,12 +173,10 @@ mod tests {
     #[test]
     fn noise_without_end_becomes_a_range() {
         let mut path = Path::new();
-        let mut x = 1_u32;
+        let mut random = fastrand::Rng::with_seed(1);
         for i in 0..200_000_u32 {
-            x = x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            let noise = f64::from(x >> 8) / f64::from(1 << 24);
             let turn = f64::from(i) * 1e-3;
-            path.push(turn.sin(), turn.cos(), noise);
+            path.push(turn.sin(), turn.cos(), random.f64());
         }
         assert!(path.strokes().is_none());
         assert!(path.stored() <= 2002);

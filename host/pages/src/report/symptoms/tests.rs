@@ -381,13 +381,12 @@ fn memory_does_not_grow_with_the_run() {
         levels: None,
         effects: EffectSettings::default(),
     });
-    let mut noise = 1_u32;
+    let mut random = fastrand::Rng::with_seed(1);
     for i in 0..600_000_u32 {
         let time_s = f64::from(i) * 6e-3;
         let mut row = vec![time_s, time_s.sin(), time_s.cos()];
         for words in &symptoms {
-            noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            row.extend([f64::from(noise >> 16) * 1e-4, f64::from((noise >> 20) % 2)]);
+            row.extend([6.5 * random.f64(), f64::from(random.u8(..2))]);
             for (word, _) in words.named() {
                 collector.symptom(&SymptomEvent {
                     time_s,

@@ -210,8 +210,7 @@ fn moments_are_those_of_a_fine_sampling() {
                     "{n} {tick:?} {variance}"
                 );
                 // Where the shaft turns back the extreme is between the nodes.
-                let low = samples.iter().copied().fold(f64::INFINITY, f64::min);
-                let high = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                let Extremes { low, high }: Extremes<f64> = samples.iter().copied().collect();
                 assert!((tick.low_nm - low).abs() < 2e-3, "{n} {tick:?} {low}");
                 assert!((tick.high_nm - high).abs() < 2e-3, "{n} {tick:?} {high}");
                 let square = |held_nm: f64| {

@@ -4,6 +4,7 @@ use super::Measured;
 use crate::parallel::Meter;
 use crate::watcher::Cancelled;
 use crepitus_model::Real;
+use crepitus_plant::Extremes;
 use crepitus_scene::Scene;
 use crepitus_scene::run::{self, FELT_COLUMN, Observer, columns, step_count};
 use crepitus_scene::trace::{EventKind, EventRecord};
@@ -26,8 +27,7 @@ pub(super) struct Signals {
     from_s: f64,
     model_nm: Vec<f64>,
     hand_nm: Vec<f64>,
-    slowest_rad_s: f64,
-    fastest_rad_s: f64,
+    omega_rad_s: Extremes<f64>,
     breaks_s: Vec<f64>,
     sticks_s: Vec<f64>,
     last_stick_s: Option<f64>,
@@ -54,9 +54,7 @@ impl Observer for SignalObserver<'_> {
         if values[0] >= s.from_s {
             s.model_nm.push(values[s.places.model]);
             s.hand_nm.push(values[s.places.hand]);
-            let omega = values[s.places.omega];
-            s.slowest_rad_s = s.slowest_rad_s.min(omega);
-            s.fastest_rad_s = s.fastest_rad_s.max(omega);
+            s.omega_rad_s.add(values[s.places.omega]);
         }
         Ok(())
     }
@@ -97,8 +95,7 @@ impl Signals {
                 from_s: scene.duration_s / 2.0,
                 model_nm: Vec::new(),
                 hand_nm: Vec::new(),
-                slowest_rad_s: f64::INFINITY,
-                fastest_rad_s: f64::NEG_INFINITY,
+                omega_rad_s: Extremes::default(),
                 breaks_s: Vec::new(),
                 sticks_s: Vec::new(),
                 last_stick_s: None,
@@ -118,19 +115,18 @@ impl Signals {
     /// The measures.
     pub(super) fn measure(&self) -> Measured {
         let (hand, model) = (self.fast(&self.hand_nm), self.fast(&self.model_nm));
-        let (low, high) = extent(&hand);
-        let between: Vec<f64> = self.breaks_s.windows(2).map(|w| w[1] - w[0]).collect();
-        let found = !between.is_empty();
-        let (shortest_s, longest_s) = extent(&between);
+        let range_nm: Extremes<f64> = hand.iter().copied().collect();
+        let between_s: Extremes<f64> = self.breaks_s.windows(2).map(|w| w[1] - w[0]).collect();
+        let found = !between_s.is_empty();
         Measured {
-            ripple_nm: high - low,
+            ripple_nm: range_nm.width(),
             ripple_rms_nm: mean(hand.iter().map(|x| x * x)).sqrt(),
             lag_s: self.tick_s * whole(self.lag_ticks(&model, &hand)),
             stick_s: (!self.sticks_s.is_empty()).then(|| mean(self.sticks_s.iter().copied())),
-            shortest_s: found.then_some(shortest_s),
-            longest_s: found.then_some(longest_s),
-            slowest_rad_s: self.slowest_rad_s,
-            fastest_rad_s: self.fastest_rad_s,
+            shortest_s: found.then_some(between_s.low),
+            longest_s: found.then_some(between_s.high),
+            slowest_rad_s: self.omega_rad_s.low,
+            fastest_rad_s: self.omega_rad_s.high,
         }
     }
 
@@ -193,14 +189,6 @@ type Points = Vec<(f64, f64)>;
 
 fn whole(n: usize) -> f64 {
     f64::from_whole(u64::try_from(n).unwrap_or(u64::MAX))
-}
-
-fn extent(values: &[f64]) -> (f64, f64) {
-    values
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
-            (low.min(x), high.max(x))
-        })
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {

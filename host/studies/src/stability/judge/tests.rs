@@ -4,8 +4,8 @@
 use super::*;
 use crate::stability::criterion::Limits;
 use crate::stability::input::{Input, Shaft};
-use crate::stability::observation::Range;
 use crepitus_model::{Convention, EventKind, Sense};
+use crepitus_plant::Extremes;
 use crepitus_scene::scene::Precision;
 
 const SUBJECT: Subject = Subject {
@@ -198,14 +198,14 @@ fn torques_stay_return_and_keep_their_band() {
     after(&band, |run| run.late_torque.add(0.400_02));
     after(&band, |run| run.late_torque.add(-2e-5));
     // Nothing was looked at.
-    let none = after(&band, |run| run.late_torque = Range::default());
+    let none = after(&band, |run| run.late_torque = Extremes::default());
     assert!(none.to_string().contains("no torque"), "{none}");
     let quiet = Criterion::TorqueQuiet {
         from_s: 0.0,
         most_nm: 1e-3,
     };
     after(&quiet, |run| run.late_torque.add(0.102));
-    after(&quiet, |run| run.late_torque = Range::default());
+    after(&quiet, |run| run.late_torque = Extremes::default());
     let stays = Criterion::TorqueStays { from_s: 0.1 };
     after(&stays, |run| run.last_change = 102);
     let limits = Limits::both(1e-9);

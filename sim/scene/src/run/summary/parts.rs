@@ -41,12 +41,7 @@ pub(super) fn torque_limit(scene: &Scene, beyond: &Beyond) -> Option<TorqueLimit
 #[expect(clippy::cast_precision_loss, reason = "below 2^53")]
 pub(super) fn hand_torque(plant: &PlantTotals, totals: &Totals) -> Option<TorqueSummary> {
     let ticks = totals.steps as f64;
-    plant.felt.map(|felt| TorqueSummary {
-        min_nm: felt.min_nm,
-        mean_nm: felt.sum / ticks,
-        max_nm: felt.max_nm,
-        rms_nm: (felt.squares / ticks).sqrt(),
-    })
+    plant.felt.map(|felt| felt.summary(ticks))
 }
 
 #[expect(clippy::cast_precision_loss, reason = "below 2^53")]
@@ -105,8 +100,8 @@ pub(super) fn cycles(tally: &Tally, were_crowded: bool) -> CycleSummary {
     CycleSummary {
         count: c.count,
         frequency_hz: any.then(|| count / c.total_s),
-        shortest_s: any.then_some(c.shortest_s),
-        longest_s: any.then_some(c.longest_s),
+        shortest_s: any.then_some(c.length_s.low),
+        longest_s: any.then_some(c.length_s.high),
     }
 }
 

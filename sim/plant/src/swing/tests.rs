@@ -2,18 +2,19 @@
 
 use super::*;
 
-const N: Numbers = Numbers {
-    friction_nm: 0.5,
-    load_loss: 0.3,
-    viscous_nms: 0.05,
-    rotor_kg_m2: 0.05,
-    brace_kg_m2: 0.01,
+const N: WeightedBrace = WeightedBrace {
+    gear: Gear {
+        inertia_kg_m2: 0.05,
+        friction_nm: 0.5,
+        load_loss: 0.3,
+    },
     gap_rad: 0.0175,
+    brace_kg_m2: 0.01,
     stiffness_nm: 120.0,
     damping_nms: 1.0,
     moment_nm: 6.0,
     weight_kg_m2: 0.2,
-    torque_scale: 1.0,
+    viscous_nms: 0.05,
 };
 
 fn begin(angle_rad: f64, omega_rad_s: f64) -> Begin {
@@ -28,8 +29,11 @@ fn begin(angle_rad: f64, omega_rad_s: f64) -> Begin {
 /// Without friction, gap and compliance a small swing is a sine of √(M/J).
 #[test]
 fn a_small_swing_without_losses_is_a_sine() {
-    let n = Numbers {
-        friction_nm: 0.0,
+    let n = WeightedBrace {
+        gear: Gear {
+            friction_nm: 0.0,
+            ..N.gear
+        },
         viscous_nms: 0.0,
         gap_rad: 1e-4,
         stiffness_nm: 2000.0,
@@ -39,8 +43,8 @@ fn a_small_swing_without_losses_is_a_sine() {
     // there is none, and the gap is 1e-4.
     let omega = (6.0_f64 / 0.26).sqrt();
     let angles = swing(&n, 0.0, &begin(0.0, 0.02 * omega), &vec![0.0; 4000]);
-    for (i, angle) in angles.iter().enumerate() {
-        let t = (i + 1) as f64 * STEP_S;
+    for (i, angle) in (1..).zip(&angles) {
+        let t = f64::from(i) * STEP_S;
         assert!(
             (angle - 0.02 * (omega * t).sin()).abs() < 3e-4,
             "{t} {angle}"
@@ -51,7 +55,7 @@ fn a_small_swing_without_losses_is_a_sine() {
 /// A half swing of a dry pendulum loses 2F/M: here by the energy, M(cos a − cos b) = F(a + b).
 #[test]
 fn dry_friction_takes_its_share_of_each_half_swing() {
-    let n = Numbers {
+    let n = WeightedBrace {
         viscous_nms: 0.0,
         stiffness_nm: 2000.0,
         gap_rad: 1e-4,
@@ -74,8 +78,17 @@ fn dry_friction_takes_its_share_of_each_half_swing() {
 /// The angle is smooth in the numbers: differences of twice the step give the same slope.
 #[test]
 fn the_angle_is_smooth_in_every_number() {
-    let base = [
-        0.5, 0.3, 0.05, 0.05, 0.01, 0.0175, 120.0, 1.0, 6.0, 0.2, 1.0,
+    let places: [fn(&mut WeightedBrace) -> &mut f64; 10] = [
+        |n| &mut n.gear.inertia_kg_m2,
+        |n| &mut n.gear.friction_nm,
+        |n| &mut n.gear.load_loss,
+        |n| &mut n.gap_rad,
+        |n| &mut n.brace_kg_m2,
+        |n| &mut n.stiffness_nm,
+        |n| &mut n.damping_nms,
+        |n| &mut n.moment_nm,
+        |n| &mut n.weight_kg_m2,
+        |n| &mut n.viscous_nms,
     ];
     let torques: Vec<f64> = (0..4000)
         .map(|i| {
@@ -86,13 +99,14 @@ fn the_angle_is_smooth_in_every_number() {
             }
         })
         .collect();
-    let angles = |numbers: [f64; 11]| swing(&numbers.into(), 0.1, &begin(0.1, 5.0), &torques);
-    for place in 0..11 {
+    for (i, place) in places.iter().enumerate() {
         let slope = |share: f64| {
-            let (mut up, mut down) = (base, base);
-            up[place] *= 1.0 + share;
-            down[place] *= 1.0 - share;
-            let (up, down) = (angles(up), angles(down));
+            let angles = |factor: f64| {
+                let mut n = N;
+                *place(&mut n) *= factor;
+                swing(&n, 0.1, &begin(0.1, 5.0), &torques)
+            };
+            let (up, down) = (angles(1.0 + share), angles(1.0 - share));
             let slopes = up.iter().zip(&down).map(|(u, d)| (u - d) / share);
             slopes.collect::<Vec<_>>()
         };
@@ -100,6 +114,6 @@ fn the_angle_is_smooth_in_every_number() {
         let norm = |v: &mut dyn Iterator<Item = f64>| v.map(|x| x * x).sum::<f64>().sqrt();
         let differ = norm(&mut a.iter().zip(&b).map(|(a, b)| a - b));
         let whole = norm(&mut a.iter().copied());
-        assert!(differ < 0.1 * whole + 1e-9, "{place}: {differ} of {whole}");
+        assert!(differ < 0.1 * whole + 1e-9, "{i}: {differ} of {whole}");
     }
 }

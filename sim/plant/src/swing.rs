@@ -1,4 +1,4 @@
-//! Simulation of a weight that swings in the brace, as the encoder measures it.
+//! A weight that swings in the brace, for a fit: the angle of the rotor, smooth in every parameter.
 //!
 //! ```text
 //! motor, gear          gap           brace      cuffs      weight
@@ -8,27 +8,51 @@
 //!
 //! J_r·Ω̇_r = τ − (F + μ|τ|)·sgn Ω_r − N,  J_b·Ω̇_b = N − P,  J_w·Ω̇_w = P − B·Ω_w − M·sin(φ_w − φ₀)
 //!
-//! with P = k(φ_b − φ_w) + b(Ω_b − Ω_w), and N the force of the teeth: zero inside the
-//! gap, never pulling. Friction is set-valued: at rest it is what holds the rotor. Where
-//! the gap closes, rotor and brace go on together, and their impulse is kept.
+//! with P = k(φ_b − φ_w) + b(Ω_b − Ω_w), and N the force of the teeth. The parts are
+//! [`drivetrain`](crate::effects::drivetrain), [`backlash`](crate::effects::backlash),
+//! [`cuff`](crate::effects::cuff) and a [`limb`](crate::effects::limb) without passive moment: the
+//! [chain](crate::chain) of these parts, released, is the same brace.
 //!
-//! Runge-Kutta of the fourth order between the events, which are located within a
-//! step: so the angle is a smooth function of the numbers, and can be differentiated
-//! by differences.
+//! Only the solver differs. A fit follows a swing thousands of times, and differentiates the angle by
+//! differences. So steps are ten times as long as a tick, by Runge-Kutta of the fourth order between
+//! the events, which are located within a step: that keeps the angle smooth.
 
-use crate::brace::numbers::Numbers;
+// All functions are `#[inline]`: the package of a fit compiles them with its own optimisation.
 
-/// Integration step, s; the current is averaged over it.
-pub(crate) const STEP_S: f64 = 5e-4;
+use crate::effects::drivetrain::Gear;
+
+/// Integration step, s.
+pub const STEP_S: f64 = 5e-4;
 
 /// Most changes of mode in one step; the rest of the step is integrated in the last mode.
 const MOST_CHANGES: u32 = 24;
 
+/// A brace with a weight in its cuffs, all referred to the joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WeightedBrace {
+    /// Rotor, and losses of the gear.
+    pub gear: Gear,
+    /// Lost motion of the gear, rad.
+    pub gap_rad: f64,
+    /// Inertia of the brace between gear and cuffs, kg·m².
+    pub brace_kg_m2: f64,
+    /// Stiffness of the cuffs, N·m/rad.
+    pub stiffness_nm: f64,
+    /// Damping of the cuffs, N·m·s/rad.
+    pub damping_nms: f64,
+    /// Moment of the weight when it is horizontal, N·m.
+    pub moment_nm: f64,
+    /// Inertia of the weight about the axis, kg·m².
+    pub weight_kg_m2: f64,
+    /// Viscous damping about the axis, N·m·s/rad.
+    pub viscous_nms: f64,
+}
+
 /// Angles and velocities of rotor, brace and weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct State {
-    pub(crate) angle: [f64; 3],
-    pub(crate) omega: [f64; 3],
+struct State {
+    angle: [f64; 3],
+    omega: [f64; 3],
 }
 
 const ROTOR: usize = 0;
@@ -36,6 +60,7 @@ const BRACE: usize = 1;
 const WEIGHT: usize = 2;
 
 impl State {
+    #[inline]
     fn moved(&self, by: f64, rate: &Self) -> Self {
         Self {
             angle: std::array::from_fn(|i| self.angle[i] + by * rate.angle[i]),
@@ -55,20 +80,20 @@ struct Mode {
 
 /// Initial state of a swing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Begin {
+pub struct Begin {
     /// Angle of the rotor, rad.
-    pub(crate) angle_rad: f64,
+    pub angle_rad: f64,
     /// Velocity of the rotor, rad/s.
-    pub(crate) omega_rad_s: f64,
+    pub omega_rad_s: f64,
     /// Deflection of the cuffs, φ_b − φ_w, beyond that of a steady motion, rad.
-    pub(crate) deflection_rad: f64,
+    pub deflection_rad: f64,
     /// Rate of that deflection, rad/s.
-    pub(crate) deflection_rad_s: f64,
+    pub deflection_rad_s: f64,
 }
 
 /// The brace with the torque of one step.
-struct Step<'n> {
-    n: &'n Numbers,
+struct Step<'b> {
+    n: &'b WeightedBrace,
     /// Angle at which the weight hangs at rest, rad.
     hang_rad: f64,
     /// Torque of the motor, N·m.
@@ -78,13 +103,16 @@ struct Step<'n> {
 
 impl Step<'_> {
     /// Returns the torque of the cuffs on the brace, N·m.
+    #[inline]
     fn pull(&self, x: &State) -> f64 {
         -self.n.stiffness_nm * (x.angle[BRACE] - x.angle[WEIGHT])
             - self.n.damping_nms * (x.omega[BRACE] - x.omega[WEIGHT])
     }
 
+    #[inline]
     fn rate(&self, x: &State, mode: Mode) -> State {
         let n = self.n;
+        let rotor_kg_m2 = n.gear.inertia_kg_m2;
         let pull = self.pull(x);
         let weight = (-pull
             - n.viscous_nms * x.omega[WEIGHT]
@@ -93,11 +121,11 @@ impl Step<'_> {
         let driven = |sense: f64| self.torque - sense * self.limit;
         let (rotor, brace) = match (mode.contact, mode.sliding) {
             (Some(_), Some(sense)) => {
-                let both = (driven(sense) + pull) / (n.rotor_kg_m2 + n.brace_kg_m2);
+                let both = (driven(sense) + pull) / (rotor_kg_m2 + n.brace_kg_m2);
                 (both, both)
             }
             (Some(_), None) => (0.0, 0.0),
-            (None, Some(sense)) => (driven(sense) / n.rotor_kg_m2, pull / n.brace_kg_m2),
+            (None, Some(sense)) => (driven(sense) / rotor_kg_m2, pull / n.brace_kg_m2),
             (None, None) => (0.0, pull / n.brace_kg_m2),
         };
         State {
@@ -106,6 +134,7 @@ impl Step<'_> {
         }
     }
 
+    #[inline]
     fn after(&self, x: &State, mode: Mode, h: f64) -> State {
         let a = self.rate(x, mode);
         let b = self.rate(&x.moved(0.5 * h, &a), mode);
@@ -118,6 +147,7 @@ impl Step<'_> {
     }
 
     /// Returns the distance to each event; the mode ends where one is below zero.
+    #[inline]
     fn margins(&self, x: &State, mode: Mode) -> [f64; 2] {
         let pull = self.pull(x);
         let friction = match (mode.sliding, mode.contact) {
@@ -133,6 +163,7 @@ impl Step<'_> {
     }
 
     /// Changes the mode at an event.
+    #[inline]
     fn change(&self, x: &mut State, mode: &mut Mode, event: usize) {
         if event == 0 {
             match mode.sliding {
@@ -154,8 +185,9 @@ impl Step<'_> {
         }
         let n = self.n;
         let side = (x.angle[ROTOR] - x.angle[BRACE]).signum();
-        let both = (n.rotor_kg_m2 * x.omega[ROTOR] + n.brace_kg_m2 * x.omega[BRACE])
-            / (n.rotor_kg_m2 + n.brace_kg_m2);
+        let rotor_kg_m2 = n.gear.inertia_kg_m2;
+        let both = (rotor_kg_m2 * x.omega[ROTOR] + n.brace_kg_m2 * x.omega[BRACE])
+            / (rotor_kg_m2 + n.brace_kg_m2);
         x.angle[ROTOR] = x.angle[BRACE] + side * 0.5 * n.gap_rad;
         x.omega[ROTOR] = both;
         x.omega[BRACE] = both;
@@ -166,6 +198,7 @@ impl Step<'_> {
     }
 
     /// Returns the torque on the rotor without friction, N·m.
+    #[inline]
     fn net(&self, x: &State, mode: Mode) -> f64 {
         self.torque
             + if mode.contact.is_some() {
@@ -176,6 +209,7 @@ impl Step<'_> {
     }
 
     /// Advances the state by one step.
+    #[inline]
     fn go(&self, x: &mut State, mode: &mut Mode) {
         let mut left = STEP_S;
         for _ in 0..MOST_CHANGES {
@@ -217,6 +251,7 @@ impl Step<'_> {
     }
 
     /// Returns the time at which a margin passes zero, s, by regula falsi (Illinois).
+    #[inline]
     fn end(&self, x: &State, mode: Mode, event: usize, low: f64, high: f64, length: f64) -> f64 {
         let (mut a, mut b) = ((0.0, low.max(0.0)), (length, high));
         for _ in 0..30 {
@@ -247,31 +282,21 @@ impl Step<'_> {
     }
 }
 
-/// Simulates a swing; returns the rotor's angle after each step, rad. `torques_nm` is the motor's
-/// nominal torque in each step, N·m.
-pub(crate) fn swing(
-    numbers: &Numbers,
-    hang_rad: f64,
-    begin: &Begin,
-    torques_nm: &[f64],
-) -> Vec<f64> {
-    let step = |nominal_nm: f64| {
-        let torque = numbers.torque_scale * nominal_nm;
-        Step {
-            n: numbers,
-            hang_rad,
-            torque,
-            limit: numbers.friction_nm + numbers.load_loss * torque.abs(),
-        }
+/// Simulates a swing about `hang_rad`, where the weight hangs; returns the rotor's angle after each
+/// step, rad. `torques_nm` is the motor's torque in each step, N·m.
+#[inline]
+pub fn swing(brace: &WeightedBrace, hang_rad: f64, begin: &Begin, torques_nm: &[f64]) -> Vec<f64> {
+    let step = |torque: f64| Step {
+        n: brace,
+        hang_rad,
+        torque,
+        limit: brace.gear.limit_nm(torque),
     };
-    let (mut x, mut mode) = start(
-        numbers,
-        &step(torques_nm.first().copied().unwrap_or(0.0)),
-        begin,
-    );
+    let first = torques_nm.first().copied().unwrap_or(0.0);
+    let (mut x, mut mode) = start(&step(first), begin);
     (torques_nm.iter())
-        .map(|nominal_nm| {
-            step(*nominal_nm).go(&mut x, &mut mode);
+        .map(|torque| {
+            step(*torque).go(&mut x, &mut mode);
             x.angle[ROTOR]
         })
         .collect()
@@ -279,16 +304,18 @@ pub(crate) fn swing(
 
 /// Returns the initial state: rotor and brace turn together, the cuffs are deflected by the torque
 /// that they transmit.
-fn start(n: &Numbers, step: &Step<'_>, begin: &Begin) -> (State, Mode) {
+#[inline]
+fn start(step: &Step<'_>, begin: &Begin) -> (State, Mode) {
+    let n = step.n;
     let sense = begin.omega_rad_s.signum();
     let (angle, omega) = (begin.angle_rad, begin.omega_rad_s);
-    let sum = n.rotor_kg_m2 + n.brace_kg_m2 + n.weight_kg_m2;
+    let sum = n.gear.inertia_kg_m2 + n.brace_kg_m2 + n.weight_kg_m2;
     let dry = step.torque - sense * step.limit;
     // The acceleration of all as one body, about where the weight is.
     let fall = -n.moment_nm * (angle - step.hang_rad).sin() - n.viscous_nms * omega;
     let together = (dry + fall) / sum;
     // What the teeth do to the brace: the rotor's share of that is its own.
-    let teeth = dry - n.rotor_kg_m2 * together;
+    let teeth = dry - n.gear.inertia_kg_m2 * together;
     let side = if teeth >= 0.0 { 1.0 } else { -1.0 };
     // The cuffs transmit what accelerates the weight beyond its fall.
     let transmitted = n.weight_kg_m2 * together - fall;

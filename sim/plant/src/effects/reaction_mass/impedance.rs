@@ -1,39 +1,31 @@
-//! The impedance of a moving coil.
+//! The impedance of the coil on a carrier that stands still.
 //!
 //! ```text
-//! V = R·i + L·di/dt + Bl·ẋ        m·ẍ + c·ẋ + k·x = Bl·i
-//!
 //! Z(s) = R + s·L + b·s/(s² + γ·s + ω₀²)        b = Bl²/m,  γ = c/m,  ω₀² = k/m
 //! ```
 //!
 //! and the current lags by a time τ, which is that of the measurement.
 
-use crepitus_plant::spectrum::Complex;
-use nalgebra::{SMatrix, SVector};
+use crate::spectrum::Complex;
 
 /// Number of parameters, in this order: R (Ω), L (H), b (Ω/s), ω₀ (rad/s), γ (1/s), τ (s).
-pub(crate) const NUMBERS: usize = 6;
-
-/// Square matrix over the parameters.
-pub(crate) type Square = SMatrix<f64, NUMBERS, NUMBERS>;
-/// Column vector over the parameters.
-pub(crate) type Column = SVector<f64, NUMBERS>;
+pub const NUMBERS: usize = 6;
 
 /// Parameters of the impedance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Impedance {
+pub struct Impedance {
     /// R, Ω.
-    pub(crate) resistance: f64,
+    pub resistance: f64,
     /// L, H.
-    pub(crate) inductance: f64,
+    pub inductance: f64,
     /// b = Bl²/m, Ω/s.
-    pub(crate) coupling: f64,
+    pub coupling: f64,
     /// ω₀, rad/s.
-    pub(crate) resonance: f64,
+    pub resonance: f64,
     /// γ = c/m, 1/s; mechanical damping alone.
-    pub(crate) damping: f64,
+    pub damping: f64,
     /// τ, s.
-    pub(crate) delay: f64,
+    pub delay: f64,
 }
 
 impl From<[f64; NUMBERS]> for Impedance {
@@ -65,18 +57,21 @@ impl From<Impedance> for [f64; NUMBERS] {
 
 impl Impedance {
     /// Returns s/(s² + γ·s + ω₀²).
-    pub(crate) fn swing(&self, s: Complex<f64>) -> Complex<f64> {
+    #[inline]
+    pub fn swing(&self, s: Complex<f64>) -> Complex<f64> {
         s / (s * s + s * self.damping + self.resonance * self.resonance)
     }
 
     /// Returns Z at ω, Ω, without the delay.
-    pub(crate) fn at(&self, omega: f64) -> Complex<f64> {
+    #[inline]
+    pub fn at(&self, omega: f64) -> Complex<f64> {
         let s = Complex::i() * omega;
         s * self.inductance + self.swing(s) * self.coupling + self.resistance
     }
 
     /// Returns the admittance at ω, A/V, and its derivatives with respect to the parameters.
-    pub(crate) fn admittance(&self, omega: f64) -> (Complex<f64>, [Complex<f64>; NUMBERS]) {
+    #[inline]
+    pub fn admittance(&self, omega: f64) -> (Complex<f64>, [Complex<f64>; NUMBERS]) {
         let s = Complex::i() * omega;
         let z = self.at(omega);
         let lag = (-s * self.delay).exp();
@@ -97,27 +92,19 @@ impl Impedance {
     }
 
     /// Returns the excursion per volt at ω, times m/Bl: 1/(D·Z).
-    pub(crate) fn reach(&self, omega: f64) -> f64 {
+    #[inline]
+    pub fn reach(&self, omega: f64) -> f64 {
         let s = Complex::i() * omega;
         (self.swing(s) / s / self.at(omega)).norm()
     }
 
     /// Returns ζ with the coil connected: its current brakes the mass, Bl²/R beside c.
-    pub(crate) fn damping_ratio(&self) -> f64 {
+    pub fn damping_ratio(&self) -> f64 {
         0.5 * (self.damping + self.coupling / self.resistance) / self.resonance
     }
 
-    /// Returns the impedance with a step of its numbers.
-    pub(crate) fn stepped(&self, step: &Column) -> Self {
-        let mut numbers = <[f64; NUMBERS]>::from(*self);
-        for (number, step) in numbers.iter_mut().zip(step.iter()) {
-            *number += step;
-        }
-        numbers.into()
-    }
-
     /// Returns the motional resistance at the resonance, as a share of the total one.
-    pub(crate) fn motional_share(&self) -> f64 {
+    pub fn motional_share(&self) -> f64 {
         let added = self.coupling / self.damping;
         added / (self.resistance + added)
     }
