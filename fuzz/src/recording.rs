@@ -59,7 +59,7 @@ fn good_samples(samples: &Samples) {
     assert_eq!(time_s.first(), Some(&0.0));
     assert!(time_s.array_windows().all(|[a, b]| a < b), "{time_s:?}");
     for warning in &samples.warnings {
-        assert!(!warning.to_string().trim().is_empty(), "{warning:?}");
+        assert!(!warning.trim().is_empty(), "{warning:?}");
     }
 }
 

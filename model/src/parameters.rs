@@ -223,46 +223,33 @@ pub(crate) const fn switch(device: &[Parameter]) -> u8 {
 /// settings! {
 ///     /// Why there are such settings.
 ///     pub struct NameSettings, group "name" {
-///         render { id: 7 always, choice: ["off", "on"], default: 0, meaning: "…" },
+///         render (7 always) ["off", "on"], 0, "whether …";
 ///     } chosen {
-///         form { id: 9 always, choice: ["round", "square"], default: 0, meaning: "…" },
+///         form (9 always) ["round", "square"], 0, "its form";
 ///     } {
-///         gain { id: 8 always, symbol: "g", unit: "1", range: 0.0..=10.0, default: 1.0, meaning: "…" },
+///         gain (8 always) "g" "1", 0.0..=10.0, 1.0, "gain of …";
 ///     }
 /// }
 /// ```
 ///
-/// The device's own choices come first; they are not fields of the struct. Those
-/// that are `chosen` are: the place of an option. A number without an `id` is one
-/// that no device has. Made are the struct with its fields, [`Tabled`] and
+/// A choice has names and the place of its default; a number has symbol, unit, range and
+/// default. The device's own choices come first; they are not fields of the struct. Those
+/// that are `chosen` are: the place of an option. A number without an id is one that no
+/// device has. Made are the struct with its fields, [`Tabled`] and
 /// [`Default`], and `DEVICE`: what a device has of it, to be listed in
 /// `crepitus_protocol::parameters`.
 macro_rules! settings {
     (
         $(#[$meta:meta])*
         pub struct $name:ident, group $group:literal {
-            $($choice:ident {
-                id: $choice_id:literal $choice_when:ident,
-                choice: $names:expr,
-                default: $choice_default:literal,
-                meaning: $choice_meaning:literal $(,)?
-            }),* $(,)?
+            $($choice:ident ($choice_id:literal $choice_when:ident)
+                $names:expr, $choice_default:literal, $choice_meaning:literal;)*
         } $(chosen {
-            $($pick:ident {
-                id: $pick_id:literal $pick_when:ident,
-                choice: $pick_names:expr,
-                default: $pick_default:literal,
-                meaning: $pick_meaning:literal $(,)?
-            }),* $(,)?
+            $($pick:ident ($pick_id:literal $pick_when:ident)
+                $pick_names:expr, $pick_default:literal, $pick_meaning:literal;)*
         })? {
-            $($field:ident {
-                $(id: $id:literal $when:ident,)?
-                symbol: $symbol:literal,
-                unit: $unit:literal,
-                range: $min:literal..=$max:literal,
-                default: $default:literal,
-                meaning: $meaning:literal $(,)?
-            }),* $(,)?
+            $($field:ident $(($id:literal $when:ident))?
+                $symbol:literal $unit:literal, $min:literal..=$max:literal, $default:literal, $meaning:literal;)*
         }
     ) => {
         $(#[$meta])*

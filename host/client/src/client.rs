@@ -48,7 +48,8 @@ pub struct Client<T> {
     /// The error that ended the connection.
     pub(crate) loss: Option<Loss>,
     pub(crate) round_trips: RoundTrips,
-    pub(crate) counts: Counts,
+    /// Without the frames, which the wire counts.
+    pub(crate) tally: Tally,
 }
 
 /// Whether this client renews the lease.
@@ -96,16 +97,6 @@ pub(crate) struct Telemetry {
     pub(crate) heard_at: Duration,
     /// The silence was reported.
     pub(crate) is_silent: bool,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Counts {
-    pub(crate) strays: u64,
-    pub(crate) repeats: u64,
-    pub(crate) renewals: u64,
-    pub(crate) stalls: u64,
-    pub(crate) unasked_blocks: u64,
-    pub(crate) unread_blocks: u64,
 }
 
 /// Samples that are always under way, at most: 100 ms of them.
@@ -189,7 +180,7 @@ impl<T: Transport> Client<T> {
             pending_request: None,
             loss: None,
             round_trips: RoundTrips::default(),
-            counts: Counts::default(),
+            tally: Tally::default(),
         }
     }
 
@@ -287,24 +278,11 @@ impl<T: Transport> Client<T> {
     /// The counters of this client.
     pub fn tally(&self) -> Tally {
         let (frames, discarded_frames, foreign_frames) = self.wire.counts();
-        let Counts {
-            strays,
-            repeats,
-            renewals,
-            stalls,
-            unasked_blocks,
-            unread_blocks,
-        } = self.counts;
         Tally {
             frames,
             discarded_frames,
             foreign_frames,
-            stray_answers: strays,
-            repeats,
-            renewals,
-            stalls,
-            unasked_blocks,
-            unread_blocks,
+            ..self.tally
         }
     }
 

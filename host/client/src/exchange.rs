@@ -137,7 +137,7 @@ impl<T: Transport> Client<T> {
             self.connected()?;
             let sent = send(&mut self.wire);
             self.sent(sent)?;
-            self.counts.repeats += u64::from(tries > 0);
+            self.tally.repeats += u64::from(tries > 0);
             tries += 1;
             let retry_at = end.min(self.now() + timing.retry);
             while self.now() < retry_at {
@@ -149,7 +149,7 @@ impl<T: Transport> Client<T> {
                         .took(kind, self.now().saturating_sub(started));
                     return Ok(answer);
                 }
-                self.counts.strays += 1;
+                self.tally.stray_answers += 1;
             }
         }
         Err(Error::NoAnswer {
@@ -165,7 +165,7 @@ impl<T: Transport> Client<T> {
         let until = self.now() + time;
         while self.now() < until {
             if self.receive(until)?.is_some() {
-                self.counts.strays += 1;
+                self.tally.stray_answers += 1;
             }
         }
         Ok(())
@@ -196,7 +196,7 @@ impl<T: Transport> Client<T> {
         let number = self.next_number();
         let renewal = self.numbered(number, Operation::Renew);
         let sent = self.wire.request(&renewal);
-        self.counts.renewals += 1;
+        self.tally.renewals += 1;
         self.sent(sent)
     }
 
@@ -210,7 +210,7 @@ impl<T: Transport> Client<T> {
         match result {
             Ok(()) => Ok(()),
             Err(TransportError::Stalled { .. }) => {
-                self.counts.stalls += 1;
+                self.tally.stalls += 1;
                 Ok(())
             }
             Err(error) => Err(self.failed(error)),

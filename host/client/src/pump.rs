@@ -61,7 +61,7 @@ impl<T: Transport> Client<T> {
                 return Ok(None);
             }
             if let Ok(Some(_)) = self.receive(self.next_look(until)) {
-                self.counts.strays += 1;
+                self.tally.stray_answers += 1;
             }
         }
     }
@@ -82,7 +82,7 @@ impl<T: Transport> Client<T> {
                 Ok(None) => break,
                 Ok(Some(incoming)) => {
                     if self.take_in(incoming).is_some() {
-                        self.counts.strays += 1;
+                        self.tally.stray_answers += 1;
                     }
                 }
                 Err(error) => return Err(self.failed(error)),
@@ -167,7 +167,7 @@ impl<T: Transport> Client<T> {
                 None
             }
             Incoming::Reply(reply) if reply.session != self.session => {
-                self.counts.strays += 1;
+                self.tally.stray_answers += 1;
                 None
             }
             Incoming::Reply(reply) if self.watch.asked == Some(reply.number) => {
@@ -195,13 +195,13 @@ impl<T: Transport> Client<T> {
         let Some(accounting) =
             (self.telemetry.accounting.as_mut()).filter(|_| self.telemetry.is_subscribed)
         else {
-            self.counts.unasked_blocks += 1;
+            self.tally.unasked_blocks += 1;
             return;
         };
         self.telemetry.heard_at = self.wire.now();
         self.telemetry.is_silent = false;
         if self.events.len() >= WAITING_EVENTS {
-            self.counts.unread_blocks += 1;
+            self.tally.unread_blocks += 1;
             return;
         }
         let missing = match accounting.take(&block) {

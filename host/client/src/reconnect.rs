@@ -141,7 +141,7 @@ impl<T: Transport> Client<T> {
             if block.first_tick >= first_tick {
                 self.take_block(Box::new(block));
             } else {
-                self.counts.unasked_blocks += 1;
+                self.tally.unasked_blocks += 1;
             }
         }
         Ok(first)

@@ -18,7 +18,6 @@
 // Counts become numbers to be drawn; none comes near 2^53.
 #![allow(clippy::cast_precision_loss)]
 
-mod balance;
 mod balance_table;
 mod channels;
 mod chart_beats;
@@ -57,7 +56,6 @@ mod fixture;
 
 pub use crate::plot::page::Section;
 pub use crate::plot::{Column, Mark, Paper, Picture};
-pub use balance::{Account, Balance, Term as EnergyTerm};
 pub use channels::{Setup, TorqueLevels};
 pub use collector::{Collector, Figures};
 pub use overlay::{Difference, Measured, Quantity};

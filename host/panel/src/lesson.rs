@@ -47,4 +47,4 @@ pub use plan::{
 };
 pub use session::{Recorded, Session, SessionError, Started};
 pub use summary::{Confusion, Interval, Scores, StudentScores, Summary};
-pub use view::{AnswerView, Choices, KneeView, View};
+pub use view::{AnswerView, Choices, View};

@@ -7,7 +7,7 @@ use crepitus_protocol::{TICKS_PER_S, Values};
 
 /// Converts samples to rows, with angle and speed from the drive's own
 /// estimator.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Samples {
     shaft: Shaft,
     /// Start of the count, at the first block since the drive has started.
@@ -23,17 +23,6 @@ struct Begin {
     tick: u64,
     /// Ticks of time that have passed before it.
     passed: u64,
-}
-
-impl Default for Samples {
-    fn default() -> Self {
-        Self {
-            shaft: Shaft::new(),
-            begin: Begin::default(),
-            next_tick: 0,
-            has_begun: false,
-        }
-    }
 }
 
 impl Samples {

@@ -6,7 +6,7 @@ use crepitus_model::render::input_check::InputLimits;
 use crepitus_protocol::{DeviceSettings, TICK_S, Values};
 
 /// The shaft's estimator.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Shaft {
     settings: EncoderSettings,
     reader: Option<EncoderReader<f32>>,
@@ -15,15 +15,6 @@ pub(crate) struct Shaft {
 }
 
 impl Shaft {
-    pub(crate) fn new() -> Self {
-        Self {
-            settings: EncoderSettings::default(),
-            reader: None,
-            next_tick: 0,
-            last_count: 0,
-        }
-    }
-
     /// Applies parameters; another encoder resets the estimator.
     pub(crate) fn set(&mut self, values: &Values) {
         if let Ok(settings) = DeviceSettings::of(values)

@@ -51,48 +51,16 @@ settings! {
     /// Assumed winding parameters, and limits of the current loop.
     pub struct CurrentLoopSettings, group "motor" {} {
         // The largest is a tenth of the tick: beyond, a voltage that is a tick late rings.
-        bandwidth_hz {
-            id: 20 disarmed,
-            symbol: "f",
-            unit: "Hz",
-            range: 1.0..=2000.0,
-            default: 1000.0,
-            meaning: "bandwidth of the current loop: a step is followed with the time constant 1/2πf",
-        },
-        resistance_ohm {
-            id: 21 disarmed,
-            symbol: "R",
-            unit: "Ω",
-            range: 0.01..=100.0,
-            default: 1.23,
-            meaning: "resistance of the winding that the device assumes; copper gains 39 % per 100 K",
-        },
-        inductance_h {
-            id: 22 disarmed,
-            symbol: "L",
-            unit: "H",
-            range: 1e-6..=1.0,
-            default: 0.34e-3,
-            meaning: "inductance of the winding that the device assumes",
-        },
-        supply_v {
-            id: 23 disarmed,
-            symbol: "U",
-            unit: "V",
-            // A quarter more has to be within what the supply's converter shows, 52.8 V.
-            range: 1.0..=40.0,
-            default: 24.0,
-            meaning: "supply voltage of the bridge, in either direction",
-        },
+        bandwidth_hz (20 disarmed) "f" "Hz", 1.0..=2000.0, 1000.0,
+            "bandwidth of the current loop: a step is followed with the time constant 1/2πf";
+        resistance_ohm (21 disarmed) "R" "Ω", 0.01..=100.0, 1.23,
+            "resistance of the winding that the device assumes; copper gains 39 % per 100 K";
+        inductance_h (22 disarmed) "L" "H", 1e-6..=1.0, 0.34e-3, "inductance of the winding that the device assumes";
+        // A quarter more has to be within what the supply's converter shows, 52.8 V.
+        supply_v (23 disarmed) "U" "V", 1.0..=40.0, 24.0, "supply voltage of the bridge, in either direction";
         // The gear's short-time torque is the largest; the hardware trips at 1.95 A.
-        current_limit_a {
-            id: 24 disarmed,
-            symbol: "I",
-            unit: "A",
-            range: 0.01..=1.37,
-            default: 1.37,
-            meaning: "largest current setpoint: 6.5 N·m at the joint of a hand that back-drives the gear",
-        },
+        current_limit_a (24 disarmed) "I" "A", 0.01..=1.37, 1.37,
+            "largest current setpoint: 6.5 N·m at the joint of a hand that back-drives the gear";
     }
 }
 

@@ -10,31 +10,13 @@ use crate::parameters::settings;
 settings! {
     /// Limits of a device.
     pub struct LimitSettings, group "limits" {} {
-        torque_nm {
-            id: 26 always,
-            symbol: "Tmax",
-            unit: "N·m",
-            range: 0.0..=4.5,
-            default: 4.5,
-            meaning: "largest torque of the motor at the joint; a hand that back-drives the gear feels up to 6.5",
-        },
-        slew_nm_per_s {
-            id: 27 always,
-            symbol: "Ṫmax",
-            unit: "N·m/s",
-            range: 1.0..=1e3,
-            default: 100.0,
-            meaning: "how fast torque grows after arming and after a change; the model's own jumps are exempt",
-        },
-        speed_rad_s {
-            id: 28 disarmed,
-            symbol: "Ωmax",
-            unit: "rad/s",
-            range: 0.1..=7.33,
-            default: 7.33,
-            meaning: "speed of the joint beyond which the device disarms: 7.33 is the gear's 420 deg/s; at 24 V it disarms above \
-                      5.73, as the back-EMF of a faster motor is more than the bridge holds",
-        },
+        torque_nm (26 always) "Tmax" "N·m", 0.0..=4.5, 4.5,
+            "largest torque of the motor at the joint; a hand that back-drives the gear feels up to 6.5";
+        slew_nm_per_s (27 always) "Ṫmax" "N·m/s", 1.0..=1e3, 100.0,
+            "how fast torque grows after arming and after a change; the model's own jumps are exempt";
+        speed_rad_s (28 disarmed) "Ωmax" "rad/s", 0.1..=7.33, 7.33,
+            "speed of the joint beyond which the device disarms: 7.33 is the gear's 420 deg/s; at 24 V it disarms above \
+             5.73, as the back-EMF of a faster motor is more than the bridge holds";
     }
 }
 
@@ -44,75 +26,35 @@ settings! {
     /// Defaults: a knee from straight to 120° feels the whole torque. The stops of the
     /// brace are 5° beyond either end. A bench without a leg may turn further.
     pub struct RangeSettings, group "range" {} {
-        least_deg {
-            id: 29 disarmed,
-            symbol: "θmin",
-            unit: "deg",
-            range: -3600.0..=3600.0,
-            default: -5.0,
-            meaning: "end of the range in extension: from here on there is no torque",
-        },
-        most_deg {
-            id: 30 disarmed,
-            symbol: "θmax",
-            unit: "deg",
-            range: -3600.0..=3600.0,
-            default: 125.0,
-            meaning: "end of the range in flexion: from here on there is no torque",
-        },
-        fade_deg {
-            id: 31 disarmed,
-            symbol: "θfade",
-            unit: "deg",
-            range: 1.0..=30.0,
-            default: 5.0,
-            meaning: "before either end the torque fades over this angle; \
-                      as far beyond it the device disarms with a fault",
-        },
+        least_deg (29 disarmed) "θmin" "deg", -3600.0..=3600.0, -5.0,
+            "end of the range in extension: from here on there is no torque";
+        most_deg (30 disarmed) "θmax" "deg", -3600.0..=3600.0, 125.0,
+            "end of the range in flexion: from here on there is no torque";
+        fade_deg (31 disarmed) "θfade" "deg", 1.0..=30.0, 5.0,
+            "before either end the torque fades over this angle; \
+             as far beyond it the device disarms with a fault";
     }
 }
 
 settings! {
     /// A sensor of the joint's own angle, behind gear and coupling.
     pub struct JointSensorSettings, group "joint-sensor" {
-        fitted {
-            id: 32 disarmed,
-            choice: ["no", "yes"],
-            default: 0,
-            meaning: "the joint has an angle sensor; without one a coupling that slips is not detected",
-        },
+        fitted (32 disarmed) ["no", "yes"], 0,
+            "the joint has an angle sensor; without one a coupling that slips is not detected";
     } {
-        tolerance_deg {
-            id: 33 disarmed,
-            symbol: "Δθ",
-            unit: "deg",
-            range: 2.0..=20.0,
-            default: 4.0,
-            meaning: "by how much sensor and encoder may differ: backlash, the sensor's error and its lag",
-        },
+        tolerance_deg (33 disarmed) "Δθ" "deg", 2.0..=20.0, 4.0,
+            "by how much sensor and encoder may differ: backlash, the sensor's error and its lag";
     }
 }
 
 settings! {
     /// Torque constant of the motor, and what gear and motor bear.
     pub struct MotorSettings, group "motor" {} {
-        torque_constant_nm_per_a {
-            id: 25 disarmed,
-            symbol: "Kt",
-            unit: "N·m/A",
-            range: 1e-4..=10.0,
-            default: 0.0389,
-            meaning: "torque of the motor for one ampere, and its back-EMF for one rad/s",
-        },
-        continuous_a {
-            id: 34 disarmed,
-            symbol: "Ic",
-            unit: "A",
-            range: 0.01..=0.95,
-            default: 0.95,
-            meaning: "current that gear and motor bear for ever: 4.5 N·m at a hand that back-drives the gear; \
-                      the largest current for a second",
-        },
+        torque_constant_nm_per_a (25 disarmed) "Kt" "N·m/A", 1e-4..=10.0, 0.0389,
+            "torque of the motor for one ampere, and its back-EMF for one rad/s";
+        continuous_a (34 disarmed) "Ic" "A", 0.01..=0.95, 0.95,
+            "current that gear and motor bear for ever: 4.5 N·m at a hand that back-drives the gear; \
+             the largest current for a second";
     }
 }
 

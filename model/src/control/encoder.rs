@@ -21,30 +21,12 @@ use crate::real::Real;
 settings! {
     /// The encoder and its place in the drivetrain.
     pub struct EncoderSettings, group "encoder" {} {
-        lines {
-            id: 6 disarmed,
-            symbol: "N",
-            unit: "lines per motor turn",
-            range: 1.0..=1e6,
-            default: 512.0,
-            meaning: "lines of the encoder disc; quadrature makes four counts of each",
-        },
-        gear_ratio {
-            id: 7 disarmed,
-            symbol: "i",
-            unit: "motor turns per joint turn",
-            range: 1.0..=1e4,
-            default: 86.0,
-            meaning: "reduction between the motor, where the encoder sits, and the joint",
-        },
-        velocity_bandwidth_hz {
-            id: 8 disarmed,
-            symbol: "f_b",
-            unit: "Hz",
-            range: 0.1..=1e4,
-            default: 50.0,
-            meaning: "bandwidth of the velocity estimate: higher follows faster, lower is quieter",
-        },
+        lines (6 disarmed) "N" "lines per motor turn", 1.0..=1e6, 512.0,
+            "lines of the encoder disc; quadrature makes four counts of each";
+        gear_ratio (7 disarmed) "i" "motor turns per joint turn", 1.0..=1e4, 86.0,
+            "reduction between the motor, where the encoder sits, and the joint";
+        velocity_bandwidth_hz (8 disarmed) "f_b" "Hz", 0.1..=1e4, 50.0,
+            "bandwidth of the velocity estimate: higher follows faster, lower is quieter";
     }
 }
 

@@ -6,58 +6,19 @@ settings! {
     /// The parameters of the stick-slip object, in SI units. Defaults are the
     /// paper's.
     pub struct Parameters, group "crepitus" {
-        render {
-            id: 0 always,
-            choice: ["off", "on"],
-            default: 1,
-            meaning: "whether the joint grates; `off` is a healthy joint",
-        },
-        restart {
-            id: 5 always,
-            choice: ["elastic", "from-kinetic"],
-            default: 0,
-            meaning: "torque with which a stick begins: 2Tk − Ts, or Tk",
-        },
+        render (0 always) ["off", "on"], 1, "whether the joint grates; `off` is a healthy joint";
+        restart (5 always) ["elastic", "from-kinetic"], 0, "torque with which a stick begins: 2Tk − Ts, or Tk";
     } {
-        inertia_kg_m2 {
-            id: 1 always,
-            symbol: "J",
-            unit: "kg·m²",
-            range: 1e-12..=1e3,
-            default: 0.01,
-            meaning: "inertia of the imaginary object; with the stiffness it sets the pitch √(kr/J)/2π",
-        },
-        stiffness_nm_per_rad {
-            id: 2 always,
-            symbol: "kr",
-            unit: "N·m/rad",
-            range: 1e-6..=1e9,
-            default: 400.0,
-            meaning: "stiffness of the spring that holds the imaginary object",
-        },
-        damping_nms_per_rad {
-            symbol: "c",
-            unit: "N·m·s/rad",
-            range: 0.0..=1e6,
-            default: 0.0,
-            meaning: "viscous damping of the imaginary object; 0 in the paper and under `frozen`",
-        },
-        kinetic_torque_nm {
-            id: 3 always,
-            symbol: "Tk",
-            unit: "N·m",
-            range: 0.0..=1e6,
-            default: 0.2,
-            meaning: "friction torque while the shaft slips over the object; the mean torque at constant speed",
-        },
-        static_torque_nm {
-            id: 4 always,
-            symbol: "Ts",
-            unit: "N·m",
-            range: 0.0..=1e6,
-            default: 0.4,
-            meaning: "torque at which a stick breaks; nothing larger is ever shown",
-        },
+        inertia_kg_m2 (1 always) "J" "kg·m²", 1e-12..=1e3, 0.01,
+            "inertia of the imaginary object; with the stiffness it sets the pitch √(kr/J)/2π";
+        stiffness_nm_per_rad (2 always) "kr" "N·m/rad", 1e-6..=1e9, 400.0,
+            "stiffness of the spring that holds the imaginary object";
+        damping_nms_per_rad "c" "N·m·s/rad", 0.0..=1e6, 0.0,
+            "viscous damping of the imaginary object; 0 in the paper and under `frozen`";
+        kinetic_torque_nm (3 always) "Tk" "N·m", 0.0..=1e6, 0.2,
+            "friction torque while the shaft slips over the object; the mean torque at constant speed";
+        static_torque_nm (4 always) "Ts" "N·m", 0.0..=1e6, 0.4,
+            "torque at which a stick breaks; nothing larger is ever shown";
     }
 }
 

@@ -2,22 +2,14 @@
 
 use super::Fault;
 
-/// Controller that detects a fault.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Detector {
-    /// The drive controller.
-    Drive,
-    /// The comms controller.
-    Comms,
-}
-
-impl Detector {
-    /// Name for people.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Drive => "drive",
-            Self::Comms => "comms",
-        }
+crepitus_model::named! {
+    /// Controller that detects a fault.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub enum Detector {
+        /// The drive controller.
+        Drive => "drive",
+        /// The comms controller.
+        Comms => "comms",
     }
 }
 

@@ -2,19 +2,6 @@
 
 use super::*;
 
-/// The compiler does not ask for a row.
-#[test]
-fn every_fault_has_its_row() {
-    let source = include_str!("../fault.rs");
-    let (_, list) = source.split_once("pub enum Fault {").expect("the list");
-    let (list, _) = list.split_once('}').expect("its end");
-    let codes = list.lines().filter_map(|line| {
-        let (_, code) = line.trim().strip_suffix(',')?.split_once(" = ")?;
-        code.parse::<u8>().ok()
-    });
-    assert!(codes.eq(FAULTS.map(|spec| spec.fault.code())));
-}
-
 #[test]
 fn every_code_and_every_name_stands_once_in_order() {
     for pair in FAULTS.windows(2) {

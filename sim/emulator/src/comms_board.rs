@@ -12,7 +12,7 @@
 use crate::character::Character;
 use crate::drive_board::{CommsSide, HALF};
 use crate::image::Image;
-use crate::mcu::{Mcu, Pin, Reset};
+use crate::mcu::{Pin, Reset};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
 

@@ -34,7 +34,7 @@ mod pin_map;
 mod wiring;
 
 use crate::image::Image;
-use crate::mcu::{Mcu, Reset, Sampling, Watch};
+use crate::mcu::{Reset, Sampling, Watch};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
 use crepitus_device::drive::plausibility::TRIP_A;

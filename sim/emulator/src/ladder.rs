@@ -18,7 +18,7 @@ pub use calls::Calls;
 pub use native::native;
 
 use crate::Image;
-use crate::mcu::{Mcu, Watch};
+use crate::mcu::Watch;
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
 use crepitus_ladder::exchange::{

@@ -8,9 +8,8 @@
 //! | the drive with leg, link and comms | [`drive_board`] |
 //! | comms with link and USB | [`comms_board`] |
 //! | both, at a host's USB cable | [`pair`] |
-//! | the interface of a microcontroller | [`mcu`] |
-//! | its implementation | [`stm32f405`] |
-//! | configuration registers as a table | [`registers`] |
+//! | the microcontroller | [`stm32f405`] |
+//! | its resets, accesses and observers | [`mcu`] |
 //! | setup of pins | [`pins`] |
 //! | cycles of a task | [`cycles`] |
 //! | wait states and caches of flash | [`flash_interface`] |
@@ -28,7 +27,7 @@
 //! contention with the DMA, the write buffer and the core's own fetches ahead
 //! are left out. Start-up of crystal and PLL is shortened.
 //!
-//! [`mcu::Mcu::not_modelled`] lists features that a program has used although they
+//! [`Stm32f405::not_modelled`] lists features that a program has used although they
 //! are not modelled.
 #![forbid(unsafe_code)]
 
@@ -62,8 +61,6 @@ pub mod pair;
 #[cfg(feature = "core")]
 pub mod pins;
 #[cfg(feature = "core")]
-pub mod registers;
-#[cfg(feature = "core")]
 mod state_hash;
 #[cfg(feature = "core")]
 pub mod stm32f405;
@@ -79,7 +76,7 @@ pub use drive_board::DriveBoard;
 #[cfg(feature = "core")]
 pub use image::Image;
 #[cfg(feature = "core")]
-pub use mcu::{Mcu, Pin, Reset};
+pub use mcu::{Pin, Reset};
 #[cfg(feature = "core")]
 pub use pair::Pair;
 #[cfg(feature = "core")]

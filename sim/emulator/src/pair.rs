@@ -11,7 +11,7 @@
 use crate::comms_board::CommsBoard;
 use crate::drive_board::DriveBoard;
 use crate::image::Image;
-use crate::mcu::{Mcu, Reset};
+use crate::mcu::Reset;
 use crate::state_hash::Hash;
 use crepitus_device::parameter_log::{ParameterLog, Sectors as _};
 use crepitus_protocol::{Revision, Values};

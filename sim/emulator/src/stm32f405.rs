@@ -13,9 +13,9 @@
 //! Unless accesses to memory are observed, `fast_path` executes most instructions, with
 //! the same result in the same cycles.
 
-mod as_mcu;
 mod exception_state;
 mod fast_path;
+mod interface;
 mod usb;
 
 use crate::chip::Chip;
@@ -24,7 +24,7 @@ use crate::chip::clocks::Clock;
 use crate::chip::memory::Memory;
 use crate::flash_interface::FlashRead;
 use crate::image::Image;
-use crate::mcu::{Mcu, Pin, RamAccess, Reset, Step, Watch};
+use crate::mcu::{Pin, RamAccess, Reset, Step, Watch};
 use crate::pins::Mode;
 use crate::time::Time;
 use exception_state::Before;
@@ -119,7 +119,7 @@ impl Stm32f405 {
             encoder: [false; 2],
             resets: Vec::new(),
         };
-        Mcu::reset(&mut mcu, Reset::PowerOn);
+        mcu.reset(Reset::PowerOn);
         mcu
     }
 
@@ -457,7 +457,7 @@ impl Stm32f405 {
             return;
         };
         self.resets.push((Time::from_units(self.now), cause));
-        Mcu::reset(self, cause);
+        self.reset(cause);
     }
 
     fn port(&self, pin: Pin) -> Option<&rsemu::dev::stm32::gpio::Gpio> {

@@ -41,10 +41,10 @@ pub struct Stretch {
 /// Holds the right end.
 pub trait Boundary: Send {
     /// The motion's velocity jumps, and takes along what it can of the chain.
-    fn jump(&mut self, omega_rad_s: f64, body: &mut Body, chain: &mut dyn Chain);
+    fn jump(&mut self, _: f64, _: &mut Body, _: &mut dyn Chain) {}
 
     /// A step begins.
-    fn begin(&mut self, motion: &MotionStep);
+    fn begin(&mut self, _: &MotionStep) {}
 
     /// The mean velocity of the right end and the torque on the boundary, for
     /// a chain that pushes like this.
@@ -65,23 +65,31 @@ pub trait Boundary: Send {
     /// Impulse felt so far, N·m·s: the mean torque that a force sensor
     /// between leg and hand shows is what it grows by, over the time.
     /// Positive opposes growing angle.
-    fn felt_nms(&self) -> f64;
+    fn felt_nms(&self) -> f64 {
+        0.0
+    }
 
     /// The part of that which came in impacts, N·m·s: at once, so that no torque
     /// can be said of it.
-    fn struck_nms(&self) -> f64;
+    fn struck_nms(&self) -> f64 {
+        0.0
+    }
 
     /// Inertia that it adds to the right end, kg·m².
-    fn inertia_kg_m2(&self) -> f64;
+    fn inertia_kg_m2(&self) -> f64 {
+        0.0
+    }
 
     /// Adds supplied, stored and dissipated energy to the balance.
-    fn energy(&self, body: &Body, balance: &mut EnergyBalance);
+    fn energy(&self, _: &Body, _: &mut EnergyBalance) {}
 
     /// Names of the columns in a trace.
-    fn columns(&self) -> &'static [&'static str];
+    fn columns(&self) -> &'static [&'static str] {
+        &[]
+    }
 
     /// Writes them.
-    fn write(&self, row: &mut Vec<f64>);
+    fn write(&self, _: &mut Vec<f64>) {}
 }
 
 /// The right end has the prescribed motion, whatever torque that takes.
@@ -177,12 +185,6 @@ impl Boundary for Prescribed {
     fn energy(&self, _: &Body, balance: &mut EnergyBalance) {
         balance.add("motion", "work", Account::Given, self.work_j);
     }
-
-    fn columns(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    fn write(&self, _: &mut Vec<f64>) {}
 }
 
 /// Boundary without a holder: the right end swings freely.
@@ -190,10 +192,6 @@ impl Boundary for Prescribed {
 pub struct Released;
 
 impl Boundary for Released {
-    fn jump(&mut self, _: f64, _: &mut Body, _: &mut dyn Chain) {}
-
-    fn begin(&mut self, _: &MotionStep) {}
-
     fn solve(&mut self, _: &Stretch, _: &Body, push: Push) -> Flow {
         Flow {
             omega_rad_s: match push.held_by_nm {
@@ -207,24 +205,4 @@ impl Boundary for Released {
     fn settle(&mut self, _: &Stretch, body: &mut Body, next: Body, _: Flow, _: &Settled, _: f64) {
         *body = next;
     }
-
-    fn felt_nms(&self) -> f64 {
-        0.0
-    }
-
-    fn struck_nms(&self) -> f64 {
-        0.0
-    }
-
-    fn inertia_kg_m2(&self) -> f64 {
-        0.0
-    }
-
-    fn energy(&self, _: &Body, _: &mut EnergyBalance) {}
-
-    fn columns(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    fn write(&self, _: &mut Vec<f64>) {}
 }

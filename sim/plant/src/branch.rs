@@ -1,6 +1,6 @@
 //! Branches that hang on the chain beside its way to the hand.
 
-use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight};
+use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, Weight};
 use crate::energy_balance::EnergyBalance;
 
 /// The left end of a branch: nothing acts there.
@@ -12,53 +12,9 @@ impl Chain for Loose {
         Push::default()
     }
 
-    fn shaft_mean_rad_s(&self, _: &Step, _: &Body, flow: Flow) -> f64 {
-        flow.omega_rad_s
-    }
-
-    fn check(&mut self, _: &Step, _: &Body, _: Flow) -> Verdict {
-        Verdict::Holds
-    }
-
     fn settle(&mut self, _: &Step, _: &Body, _: &mut Body, _: Flow, _: Option<f64>) -> Settled {
         Settled::default()
     }
-
-    fn shaft(&self, body: &Body) -> Body {
-        *body
-    }
-
-    fn is_rigid(&self) -> bool {
-        true
-    }
-
-    fn inertia_kg_m2(&self) -> f64 {
-        0.0
-    }
-
-    fn attach(&mut self, _: f64) {}
-
-    fn jerk(&mut self, _: &Body, _: f64) {}
-
-    fn weight(&self) -> Option<Weight> {
-        None
-    }
-
-    fn energy(&self, _: &Body, _: &mut EnergyBalance) {}
-
-    fn columns(&self, _: &mut Vec<&'static str>) {}
-
-    fn write(&self, _: &Body, _: &mut Vec<f64>) {}
-
-    fn impacts(&self) -> Option<Impacts> {
-        None
-    }
-
-    fn coil_current_a(&self) -> Option<f64> {
-        None
-    }
-
-    fn warnings(&self, _: &mut Vec<String>) {}
 }
 
 /// A chain, and a branch that ends at the same body. What is dry friction or an impact
@@ -94,6 +50,10 @@ impl Branched {
 }
 
 impl Chain for Branched {
+    fn left(&self) -> Option<&dyn Chain> {
+        Some(&*self.main)
+    }
+
     fn fold(&mut self, step: &Step, body: &Body) -> Push {
         let main = self.main.fold(step, body);
         self.push = self.branch.fold(step, body);
@@ -126,14 +86,6 @@ impl Chain for Branched {
         let mut own = *next;
         self.branch.settle(step, body, &mut own, branch, ends_at);
         self.main.settle(step, body, next, main, ends_at)
-    }
-
-    fn shaft(&self, body: &Body) -> Body {
-        self.main.shaft(body)
-    }
-
-    fn is_rigid(&self) -> bool {
-        self.main.is_rigid()
     }
 
     fn inertia_kg_m2(&self) -> f64 {
@@ -169,10 +121,6 @@ impl Chain for Branched {
     fn write(&self, body: &Body, row: &mut Vec<f64>) {
         self.main.write(body, row);
         self.branch.write(body, row);
-    }
-
-    fn impacts(&self) -> Option<Impacts> {
-        self.main.impacts()
     }
 
     fn coil_current_a(&self) -> Option<f64> {

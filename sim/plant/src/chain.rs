@@ -74,6 +74,19 @@ impl Push {
         self.torque_nm - self.slope_nms * w
     }
 
+    /// The solution at a body on which `torque_nm − slope_nms·w` acts, too.
+    #[inline]
+    pub fn meets(&self, torque_nm: f64, slope_nms: f64) -> Flow {
+        let omega_rad_s = match self.held_by_nm {
+            Some(_) => 0.0,
+            None => (self.torque_nm + torque_nm) / (self.slope_nms + slope_nms),
+        };
+        Flow {
+            omega_rad_s,
+            torque_nm: slope_nms * omega_rad_s - torque_nm,
+        }
+    }
+
     /// This push and the inertia of `inertia_kg_m2` on the same body.
     #[inline]
     #[must_use]
@@ -185,14 +198,25 @@ pub type Weight = Box<dyn Fn(f64) -> f64 + Send>;
 /// The chain up to one of its parts. `body` is the body at its right end; a
 /// part that separates bodies owns the one left of it.
 pub trait Chain: Send {
+    /// The chain left of this part; none left of an end.
+    fn left(&self) -> Option<&dyn Chain> {
+        None
+    }
+
     /// Action of this part and all to its left on the parts to its right.
     fn fold(&mut self, step: &Step, body: &Body) -> Push;
 
     /// Mean velocity of the motor's shaft in a solution, rad/s.
-    fn shaft_mean_rad_s(&self, step: &Step, body: &Body, flow: Flow) -> f64;
+    fn shaft_mean_rad_s(&self, step: &Step, body: &Body, flow: Flow) -> f64 {
+        let own = flow.omega_rad_s;
+        self.left()
+            .map_or(own, |left| left.shaft_mean_rad_s(step, body, flow))
+    }
 
     /// Looks at a solution; see [`Verdict`].
-    fn check(&mut self, step: &Step, body: &Body, flow: Flow) -> Verdict;
+    fn check(&mut self, _: &Step, _: &Body, _: Flow) -> Verdict {
+        Verdict::Holds
+    }
 
     /// Makes the step. `next` is the body after it, and may be changed by an
     /// impact or a stop; `ends_at` is the verdict that the step was cut for.
@@ -206,43 +230,59 @@ pub trait Chain: Send {
     ) -> Settled;
 
     /// The motor's shaft.
-    fn shaft(&self, body: &Body) -> Body;
+    fn shaft(&self, body: &Body) -> Body {
+        self.left().map_or(*body, |left| left.shaft(body))
+    }
 
     /// Returns whether shaft and right end are one body, always.
-    fn is_rigid(&self) -> bool;
+    fn is_rigid(&self) -> bool {
+        self.left().is_none_or(Chain::is_rigid)
+    }
 
     /// Inertia that moves rigidly with the right end now, kg·m².
-    fn inertia_kg_m2(&self) -> f64;
+    fn inertia_kg_m2(&self) -> f64 {
+        0.0
+    }
 
     /// Receives once, before the first step, the inertia right of this part that
     /// moves rigidly with it; infinite where the motion is prescribed.
-    fn attach(&mut self, right_kg_m2: f64);
+    fn attach(&mut self, _: f64) {}
 
     /// Receives a sudden change of the right end's velocity before it happens: what cannot
     /// be pulled stays behind.
-    fn jerk(&mut self, body: &Body, change_rad_s: f64);
+    fn jerk(&mut self, _: &Body, _: f64) {}
 
     /// The torque that the chain's own weight and the like exert on its right
     /// end at rest, as a function of the angle; `None` without such a part.
-    fn weight(&self) -> Option<Weight>;
+    fn weight(&self) -> Option<Weight> {
+        self.left()?.weight()
+    }
 
     /// Accounting what each part stores now and has lost so far.
-    fn energy(&self, body: &Body, balance: &mut EnergyBalance);
+    fn energy(&self, _: &Body, _: &mut EnergyBalance) {}
 
     /// Names of the columns in a trace.
-    fn columns(&self, names: &mut Vec<&'static str>);
+    fn columns(&self, _: &mut Vec<&'static str>) {}
 
     /// Writes them.
-    fn write(&self, body: &Body, row: &mut Vec<f64>);
+    fn write(&self, _: &Body, _: &mut Vec<f64>) {}
 
     /// The impacts so far, if a part of the chain can have any.
-    fn impacts(&self) -> Option<Impacts>;
+    fn impacts(&self) -> Option<Impacts> {
+        self.left()?.impacts()
+    }
 
     /// The current of the actuator's coil, A, if a part of the chain has one.
-    fn coil_current_a(&self) -> Option<f64>;
+    fn coil_current_a(&self) -> Option<f64> {
+        self.left()?.coil_current_a()
+    }
 
     /// Warnings.
-    fn warnings(&self, warnings: &mut Vec<String>);
+    fn warnings(&self, warnings: &mut Vec<String>) {
+        if let Some(left) = self.left() {
+            left.warnings(warnings);
+        }
+    }
 }
 
 /// The left end: the motor's shaft, on which the actuator acts.
@@ -255,15 +295,6 @@ impl Chain for Shaft {
         step.drive
     }
 
-    fn shaft_mean_rad_s(&self, _: &Step, _: &Body, flow: Flow) -> f64 {
-        flow.omega_rad_s
-    }
-
-    #[inline]
-    fn check(&mut self, _: &Step, _: &Body, _: Flow) -> Verdict {
-        Verdict::Holds
-    }
-
     #[inline]
     fn settle(&mut self, _: &Step, _: &Body, _: &mut Body, flow: Flow, _: Option<f64>) -> Settled {
         Settled {
@@ -271,40 +302,4 @@ impl Chain for Shaft {
             ..Settled::default()
         }
     }
-
-    fn shaft(&self, body: &Body) -> Body {
-        *body
-    }
-
-    fn is_rigid(&self) -> bool {
-        true
-    }
-
-    fn inertia_kg_m2(&self) -> f64 {
-        0.0
-    }
-
-    fn attach(&mut self, _: f64) {}
-
-    fn jerk(&mut self, _: &Body, _: f64) {}
-
-    fn weight(&self) -> Option<Weight> {
-        None
-    }
-
-    fn energy(&self, _: &Body, _: &mut EnergyBalance) {}
-
-    fn columns(&self, _: &mut Vec<&'static str>) {}
-
-    fn write(&self, _: &Body, _: &mut Vec<f64>) {}
-
-    fn impacts(&self) -> Option<Impacts> {
-        None
-    }
-
-    fn coil_current_a(&self) -> Option<f64> {
-        None
-    }
-
-    fn warnings(&self, _: &mut Vec<String>) {}
 }

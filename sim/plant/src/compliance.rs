@@ -5,7 +5,7 @@
 //! torque on the right end = k·(φ_left − φ_right) + b·(Ω_left − Ω_right)
 //! ```
 
-use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight};
+use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict};
 use crate::energy_balance::{Account, EnergyBalance};
 
 /// Description of a compliance, in words.
@@ -136,6 +136,10 @@ impl Compliance {
 }
 
 impl Chain for Compliance {
+    fn left(&self) -> Option<&dyn Chain> {
+        Some(&*self.left)
+    }
+
     fn fold(&mut self, step: &Step, body: &Body) -> Push {
         self.push =
             self.left
@@ -201,19 +205,9 @@ impl Chain for Compliance {
         false
     }
 
-    fn inertia_kg_m2(&self) -> f64 {
-        0.0
-    }
-
     fn attach(&mut self, right_kg_m2: f64) {
         self.right_kg_m2 = right_kg_m2;
         self.left.attach(self.inertia_kg_m2);
-    }
-
-    fn jerk(&mut self, _: &Body, _: f64) {}
-
-    fn weight(&self) -> Option<Weight> {
-        self.left.weight()
     }
 
     fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
@@ -247,14 +241,6 @@ impl Chain for Compliance {
         self.left.write(&self.inner, row);
         // As everywhere in a trace, what opposes growing angle is positive.
         row.push(-self.torque_nm);
-    }
-
-    fn impacts(&self) -> Option<Impacts> {
-        self.left.impacts()
-    }
-
-    fn coil_current_a(&self) -> Option<f64> {
-        self.left.coil_current_a()
     }
 
     fn warnings(&self, warnings: &mut Vec<String>) {

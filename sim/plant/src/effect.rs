@@ -28,6 +28,23 @@ pub struct Effect {
     pub part: Part,
 }
 
+/// Numbers of an effect, a row each: key, symbol, unit, range, default, meaning.
+macro_rules! parameters {
+    ($($key:ident $symbol:literal $unit:literal, $min:literal..=$max:literal, $default:literal, $meaning:literal;)*) => {
+        &[$(crepitus_model::parameters::ParameterSpec {
+            key: stringify!($key),
+            symbol: $symbol,
+            unit: $unit,
+            min: $min,
+            max: $max,
+            default: $default,
+            meaning: $meaning,
+        }),*]
+    };
+}
+
+pub(crate) use parameters;
+
 impl Effect {
     /// An effect of the device, from the model's table.
     pub const fn of_device(spec: &'static EffectSpec) -> Self {

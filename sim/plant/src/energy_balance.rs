@@ -1,27 +1,27 @@
 //! Energy balance of a plant: what each part was given, stores, and has
 //! lost.
 
-/// Kind of a term.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Account {
-    /// Work done on the plant from outside.
-    Given,
-    /// Energy that a part holds.
-    Stored,
-    /// Energy that has become heat.
-    Lost,
-    /// Work that the rendered torque has taken out of the mechanics.
-    Rendered,
+crepitus_model::named! {
+    /// Kind of a term.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum Account {
+        /// Work done on the plant from outside.
+        Given => "given",
+        /// Energy that a part holds.
+        Stored => "stored",
+        /// Energy that has become heat.
+        Lost => "lost",
+        /// Work that the rendered torque has taken out of the mechanics.
+        Rendered => "rendered",
+    }
 }
 
 impl Account {
-    /// Name in outputs.
-    pub fn name(self) -> &'static str {
+    /// Energy supplied to a balance by `joule` of this account, J; negative: taken from it.
+    pub fn inflow_j(self, joule: f64) -> f64 {
         match self {
-            Self::Given => "given",
-            Self::Stored => "stored",
-            Self::Lost => "lost",
-            Self::Rendered => "rendered",
+            Self::Given => joule,
+            Self::Stored | Self::Lost | Self::Rendered => -joule,
         }
     }
 }
@@ -76,13 +76,7 @@ impl EnergyBalance {
 
     /// Residual of the balance, J: zero except for numerical error.
     pub fn residual_j(&self) -> f64 {
-        self.terms
-            .iter()
-            .map(|t| match t.account {
-                Account::Given => t.joule,
-                Account::Stored | Account::Lost | Account::Rendered => -t.joule,
-            })
-            .sum()
+        self.terms.iter().map(|t| t.account.inflow_j(t.joule)).sum()
     }
 
     /// All the energy that there was and that moved, J.

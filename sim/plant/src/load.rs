@@ -1,7 +1,7 @@
 //! Torque on the body at the right end of a chain, and inertia that moves with
 //! it: the simplest part, and most effects of a leg are one.
 
-use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight};
+use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, Weight};
 use crate::energy_balance::{Account, EnergyBalance};
 
 /// A torque that depends on the body's motion, and an inertia.
@@ -79,6 +79,10 @@ impl<L: Load> Loaded<L> {
 }
 
 impl<L: Load> Chain for Loaded<L> {
+    fn left(&self) -> Option<&dyn Chain> {
+        Some(&*self.left)
+    }
+
     fn fold(&mut self, step: &Step, body: &Body) -> Push {
         let left = self.left.fold(step, body);
         self.push = self
@@ -116,14 +120,6 @@ impl<L: Load> Chain for Loaded<L> {
         self.load.moved(step, next, w);
         let left = self.left_flow(flow);
         self.left.settle(step, body, next, left, ends_at)
-    }
-
-    fn shaft(&self, body: &Body) -> Body {
-        self.left.shaft(body)
-    }
-
-    fn is_rigid(&self) -> bool {
-        self.left.is_rigid()
     }
 
     fn inertia_kg_m2(&self) -> f64 {
@@ -169,10 +165,6 @@ impl<L: Load> Chain for Loaded<L> {
         });
         row.push(-torque_nm);
         self.load.write_more(body, row);
-    }
-
-    fn impacts(&self) -> Option<Impacts> {
-        self.left.impacts()
     }
 
     fn coil_current_a(&self) -> Option<f64> {

@@ -24,8 +24,9 @@ pub use held_back::HELD_BACK_COLUMN;
 pub use lead::Lead;
 pub use probe::{AddedTime, StepTime, step_times};
 pub use summary::{
-    CycleSummary, EffectSummary, EnergySummary, EventCounts, LeadSummary, ParameterValue,
-    SUMMARY_VERSION, Summary, TankSummary, TorqueLimitSummary, TorqueSummary,
+    CycleSummary, EffectSummary, EnergySummary, EnergyTerm, EventCounts, LeadSummary,
+    ParameterValue, PlantEnergySummary, SUMMARY_VERSION, Summary, TankSummary, TorqueLimitSummary,
+    TorqueSummary,
 };
 pub use tally::TorqueTally;
 

@@ -17,7 +17,7 @@ pub struct Shipped {
 }
 
 macro_rules! shipped {
-    ($($name:literal),* $(,)?) => {
+    ($($name:literal)*) => {
         /// All of them, in the order of a first visit.
         pub const SHIPPED: &[Shipped] = &[$(Shipped {
             name: $name,
@@ -26,63 +26,20 @@ macro_rules! shipped {
     };
 }
 
-shipped![
-    "fig6-ideal-cycle",
-    "slow-examination",
-    "low-speed",
-    "high-speed",
-    "tardieu-fast",
-    "reversal-inside-stick",
-    "presliding",
-    "knee-pass-frozen",
-    "knee-pass-physical",
-    "restart-elastic",
-    "restart-from-kinetic",
-    "preset-coarse",
-    "preset-fine",
-    "preset-bone-on-bone",
-    "encoder",
-    "fig8-1-motor",
-    "fig8-2-drivetrain",
-    "fig8-3-compensation",
-    "fig8-4-cuff",
-    "fig8-5-limb",
-    "fig8",
-    "fig8-6-actuator",
-    "fig9",
-    "gear-friction",
-    "backlash-reversal",
-    "cuff-transmission",
-    "bone-shaping",
-    "pendulum-test",
-    "limb-stretch",
-    "end-feel-capsular",
-    "end-feel-hard",
-    "end-feel-springy",
-    "lead-pipe-examination",
-    "cogwheel-examination",
-    "spasticity-tardieu",
-    "spasticity-catch-angles",
-    "spasticity-reflex",
-    "clasp-knife-examination",
-    "clonus-hold",
-    "texture-there-and-back",
-    "rigid-and-contracted",
-    "catch-and-clonus",
-    "crepitus-into-a-wall",
-    "pressed-into-a-hard-end",
-    "pendulum-mas-0",
-    "pendulum-mas-1",
-    "pendulum-mas-1-plus",
-    "pendulum-mas-2",
-    "pendulum-mas-3",
-    "pendulum-mas-4",
-    "everything",
-    "passive-examination",
-    "actuator-in-a-vice",
-    "weight-in-the-brace",
-    "weight-on-the-arm",
-];
+shipped! {
+    "fig6-ideal-cycle" "slow-examination" "low-speed" "high-speed" "tardieu-fast"
+    "reversal-inside-stick" "presliding" "knee-pass-frozen" "knee-pass-physical" "restart-elastic"
+    "restart-from-kinetic" "preset-coarse" "preset-fine" "preset-bone-on-bone" "encoder"
+    "fig8-1-motor" "fig8-2-drivetrain" "fig8-3-compensation" "fig8-4-cuff" "fig8-5-limb" "fig8"
+    "fig8-6-actuator" "fig9" "gear-friction" "backlash-reversal" "cuff-transmission" "bone-shaping"
+    "pendulum-test" "limb-stretch" "end-feel-capsular" "end-feel-hard" "end-feel-springy"
+    "lead-pipe-examination" "cogwheel-examination" "spasticity-tardieu" "spasticity-catch-angles"
+    "spasticity-reflex" "clasp-knife-examination" "clonus-hold" "texture-there-and-back"
+    "rigid-and-contracted" "catch-and-clonus" "crepitus-into-a-wall" "pressed-into-a-hard-end"
+    "pendulum-mas-0" "pendulum-mas-1" "pendulum-mas-1-plus" "pendulum-mas-2" "pendulum-mas-3"
+    "pendulum-mas-4" "everything" "passive-examination" "actuator-in-a-vice" "weight-in-the-brace"
+    "weight-on-the-arm"
+}
 
 impl Shipped {
     /// The scene of this name.

@@ -20,7 +20,6 @@ use crate::image::program::{Function, Program};
 use crate::image::report::{Finding, Report};
 use crate::image::vectors::Vectors;
 use allowances::Allowances;
-use std::collections::BTreeSet;
 
 pub(crate) use allowances::unknown_calls;
 pub use shared::needless_loops;
@@ -76,14 +75,7 @@ pub fn examine(name: &str, subject: Subject<'_>) -> Result<Report, ImageError> {
     };
     let mut report = Report {
         image: name.to_owned(),
-        sizes: Vec::new(),
-        levels: Vec::new(),
-        interrupts: Vec::new(),
-        loops: Vec::new(),
-        shared_loops: BTreeSet::new(),
-        panics: Vec::new(),
-        failures: Vec::new(),
-        hints: Vec::new(),
+        ..Report::default()
     };
     gate.check_layout(&mut report);
     let roots = gate.roots(&mut report);

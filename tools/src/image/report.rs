@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 pub(crate) const RECORD: &str = "record";
 
 /// Everything about one image.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Report {
     /// The image's name in the budget.
     pub image: String,

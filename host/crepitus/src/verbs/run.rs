@@ -197,8 +197,8 @@ impl<'a> Run<'a> {
         let listener = watch.listener();
         let figures = watch.finish(&folder);
         let mut figures = figures.map_err(|e| self.not_written(&e))?;
-        if let Some(balance) = plant::balance(&summary) {
-            figures.set_balance(balance);
+        if let Some(balance) = &summary.plant_energy {
+            figures.set_balance(balance.clone());
         }
         let place = self.write(folder, self.files(&summary, &figures)?)?;
         let sound = listener.map(|listener| listener.finish(&scene.title));

@@ -28,44 +28,8 @@ const OF_ROWS: [Separator; 6] = [
 ];
 
 /// Units as people write them over a column, in small letters without brackets.
-const UNITS: [&str; 36] = [
-    "s",
-    "sec",
-    "secs",
-    "second",
-    "seconds",
-    "ms",
-    "msec",
-    "msecs",
-    "millisecond",
-    "milliseconds",
-    "us",
-    "µs",
-    "min",
-    "h",
-    "deg",
-    "degree",
-    "degrees",
-    "°",
-    "rad",
-    "radian",
-    "radians",
-    "nm",
-    "n-m",
-    "n·m",
-    "n.m",
-    "n*m",
-    "deg/s",
-    "deg/sec",
-    "°/s",
-    "rad/s",
-    "rad/sec",
-    "n",
-    "hz",
-    "mm",
-    "m",
-    "v",
-];
+const UNITS: &str = "s sec secs second seconds ms msec msecs millisecond milliseconds us µs min h \
+                     deg degree degrees ° rad radian radians nm n-m n·m n.m n*m deg/s deg/sec °/s rad/s rad/sec n hz mm m v";
 
 /// A line with its number.
 pub(super) type Line = (u64, String);
@@ -378,6 +342,7 @@ fn is_units(text: &str) -> bool {
             && !cells.iter().any(is_number)
             && cells
                 .iter()
-                .any(|cell| UNITS.contains(&bare_unit(cell).as_str()))
+                .map(bare_unit)
+                .any(|unit| UNITS.split(' ').any(|known| known == unit))
     })
 }

@@ -5,16 +5,30 @@ use crate::plot::page::scrolling;
 use maud::{Markup, html};
 
 use crate::plot::number::{fixed, scientific};
-use crate::report::balance::{Account, Balance};
+use crepitus_plant::energy_balance::Account;
+use crepitus_scene::run::{EnergyTerm, PlantEnergySummary};
 
 /// Style sheet of the table.
 pub(crate) const STYLE: &str = include_str!("balance_table.css");
 
+/// Name of a term.
+pub(crate) fn name(term: &EnergyTerm) -> String {
+    format!("{}: {}", term.effect, term.what)
+}
+
+/// The sum of an account; none if nothing was ever booked there.
+fn sum_j(balance: &PlantEnergySummary, account: Account) -> Option<f64> {
+    let terms = || balance.terms.iter().filter(|t| t.account == account);
+    terms()
+        .any(|t| t.joule != 0.0)
+        .then(|| terms().map(|t| t.joule).sum())
+}
+
 /// The table; none if nothing moved.
-pub(crate) fn table(balance: &Balance) -> Option<Markup> {
+pub(crate) fn table(balance: &PlantEnergySummary) -> Option<Markup> {
     let accounts: Vec<Account> = Account::ALL
         .into_iter()
-        .filter(|account| balance.sum_j(*account).is_some())
+        .filter(|account| sum_j(balance, *account).is_some())
         .collect();
     if accounts.is_empty() {
         return None;
@@ -37,7 +51,7 @@ pub(crate) fn table(balance: &Balance) -> Option<Markup> {
                     tbody {
                         @for term in terms {
                             tr {
-                                th scope="row" { (term.name()) }
+                                th scope="row" { (name(term)) }
                                 @for account in &accounts {
                                     td { @if *account == term.account { (millijoule(term.joule)) } }
                                 }
@@ -46,7 +60,7 @@ pub(crate) fn table(balance: &Balance) -> Option<Markup> {
                         tr.sum {
                             th scope="row" { "sum" }
                             @for account in &accounts {
-                                td { (millijoule(balance.sum_j(*account).unwrap_or(0.0))) }
+                                td { (millijoule(sum_j(balance, *account).unwrap_or(0.0))) }
                             }
                         }
                     }
@@ -86,12 +100,11 @@ fn millijoule(joule: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::balance::Term;
 
-    fn term(what: &str, account: Account, joule: f64) -> Term {
-        Term {
-            effect: "leg".to_owned(),
-            what: what.to_owned(),
+    fn term(what: &'static str, account: Account, joule: f64) -> EnergyTerm {
+        EnergyTerm {
+            effect: "leg",
+            what,
             account,
             joule,
         }
@@ -99,7 +112,7 @@ mod tests {
 
     #[test]
     fn only_the_accounts_that_occur_are_columns() {
-        let balance = Balance {
+        let balance = PlantEnergySummary {
             terms: vec![
                 term("weight", Account::Stored, -2.5),
                 term("damping", Account::Lost, 2.5),
@@ -107,12 +120,13 @@ mod tests {
             ],
             residual_j: 1e-15,
             residual_relative: 2e-16,
+            ..PlantEnergySummary::default()
         };
         let page = table(&balance).expect("terms").into_string();
         assert!(page.contains("−2500.000") && page.contains("leg: weight"));
         assert!(page.contains("0 = stored + lost"));
         assert!(!page.contains("rendered") && !page.contains(">given<"));
         assert!(page.contains("1.0·10⁻¹² mJ"));
-        assert!(table(&Balance::default()).is_none());
+        assert!(table(&PlantEnergySummary::default()).is_none());
     }
 }

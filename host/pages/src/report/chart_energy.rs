@@ -4,8 +4,10 @@ use crate::plot::number::rounded;
 use crate::plot::palette::{AXIS, CURVES, Ink, OBJECT, TEXT, TORQUE};
 use crate::plot::{Anchor, Chart, Drawing, Figure, Key, Sign};
 
-use crate::report::balance::{Account, Balance};
+use crate::report::balance_table;
 use crate::report::collector::Figures;
+use crepitus_plant::energy_balance::Account;
+use crepitus_scene::run::PlantEnergySummary;
 
 /// CSS pixels.
 const WIDTH: f64 = 960.0;
@@ -98,13 +100,13 @@ fn words(account: Account) -> &'static str {
 }
 
 /// The terms of one direction, 1 in and −1 out, largest first.
-fn bars(balance: &Balance, direction: f64) -> Vec<Bar> {
+fn bars(balance: &PlantEnergySummary, direction: f64) -> Vec<Bar> {
     let mut bars: Vec<Bar> = balance
         .terms
         .iter()
         .map(|term| Bar {
-            name: term.name(),
-            joule: direction * term.inflow_j(),
+            name: balance_table::name(term),
+            joule: direction * term.account.inflow_j(term.joule),
             account: Some(term.account),
         })
         .filter(|bar| bar.joule > 0.0)
@@ -146,17 +148,17 @@ fn group(drawing: &mut Drawing, top: f64, heading: &str, bars: &[Bar], longest: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::balance::Term;
+    use crepitus_scene::run::EnergyTerm;
 
     #[test]
     fn both_halves_have_the_same_sum() {
-        let term = |effect: &str, account, joule| Term {
-            effect: effect.to_owned(),
-            what: "x".to_owned(),
+        let term = |effect, account, joule| EnergyTerm {
+            effect,
+            what: "x",
             account,
             joule,
         };
-        let balance = Balance {
+        let balance = PlantEnergySummary {
             terms: vec![
                 term("hand", Account::Given, -1.0),
                 term("motor", Account::Given, 5.0),
@@ -165,8 +167,7 @@ mod tests {
                 term("cuff", Account::Lost, 0.001),
                 term("actuator", Account::Rendered, 0.001),
             ],
-            residual_j: 0.0,
-            residual_relative: 0.0,
+            ..PlantEnergySummary::default()
         };
         let (from, to) = (bars(&balance, 1.0), bars(&balance, -1.0));
         let sum = |bars: &[Bar]| bars.iter().map(|bar| bar.joule).sum::<f64>();

@@ -3,11 +3,11 @@
 //! Memory does not grow with the run: each part has a bound of its own, and
 //! together they stay below a few megabytes.
 
+use crepitus_scene::run::PlantEnergySummary;
 use crepitus_scene::trace::{Column, EventRecord, SymptomEvent};
 
 use crate::plot::palette::RANGE;
 use crate::plot::{Mark, Plot, Thinned};
-use crate::report::balance::Balance;
 use crate::report::channels::{Channels, Sample, Setup, TorqueLevels};
 use crate::report::choice::Choice;
 use crate::report::envelope::Envelope;
@@ -75,7 +75,7 @@ pub struct Figures {
     pub(crate) spectrum: Option<Spectrum>,
     pub(crate) plant: Option<Plant>,
     pub(crate) symptoms: Option<Symptoms>,
-    pub(crate) balance: Option<Balance>,
+    pub(crate) balance: Option<PlantEnergySummary>,
     /// Times at which parameters changed, or the device restarted.
     pub(crate) marks: Vec<Mark>,
     /// Start and end of each push of the motor to arm it, s.
@@ -93,7 +93,7 @@ impl Figures {
     }
 
     /// Adds where the energy of the plant came from and went.
-    pub fn set_balance(&mut self, balance: Balance) {
+    pub fn set_balance(&mut self, balance: PlantEnergySummary) {
         self.balance = Some(balance);
     }
 

@@ -110,23 +110,15 @@ pub struct Note {
     pub by: By,
 }
 
-/// Author of a note.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum By {
-    /// The teacher.
-    Teacher,
-    /// The lesson: a trial began, the lesson ended.
-    Lesson,
-}
-
-impl By {
-    /// Name in files and messages.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Teacher => "teacher",
-            Self::Lesson => "lesson",
-        }
+crepitus_model::named! {
+    /// Author of a note.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum By {
+        /// The teacher.
+        Teacher => "teacher",
+        /// The lesson: a trial began, the lesson ended.
+        Lesson => "lesson",
     }
 }
 

@@ -1,12 +1,9 @@
 //! The report of a session: one page to print, with two students and six knees on one sheet of A4.
 //!
-//! All its words are looked up by key, [`KEYS`], so that it is in the reader's language. It has no
+//! All its words are looked up by key, `report.…`, so that it is in the reader's language. It has no
 //! scripts, no inline style attributes and no links; its style sheet is one `<style>` element.
 
-mod keys;
 mod words;
-
-pub use keys::KEYS;
 
 use crate::lesson::finding::Finding;
 use crate::lesson::lesson::Answer;

@@ -37,14 +37,7 @@ pub struct Recorded {
 /// Text form: `2026-11-24 15:42:05`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
-pub struct Started {
-    year: u16,
-    month: u8,
-    day: u8,
-    hour: u8,
-    minute: u8,
-    second: u8,
-}
+pub struct Started([u16; 6]);
 
 /// Error of a session that cannot be rebuilt.
 #[derive(Debug, thiserror::Error)]
@@ -221,7 +214,14 @@ impl Record {
 
 impl Started {
     /// A date and time of day; `None` if there is no such day or time.
-    pub fn new(year: u16, month: u8, day: u8, hour: u8, minute: u8, second: u8) -> Option<Self> {
+    pub fn new(
+        year: u16,
+        month: u16,
+        day: u16,
+        hour: u16,
+        minute: u16,
+        second: u16,
+    ) -> Option<Self> {
         let leap = year.is_multiple_of(4) && !year.is_multiple_of(100) || year.is_multiple_of(400);
         let days = match month {
             2 if leap => 29,
@@ -232,14 +232,7 @@ impl Started {
         };
         let exists = (1..=days).contains(&day) && hour < 24 && minute < 60 && second < 60;
         let exists = exists && (1..=9999).contains(&year);
-        exists.then_some(Self {
-            year,
-            month,
-            day,
-            hour,
-            minute,
-            second,
-        })
+        exists.then_some(Self([year, month, day, hour, minute, second]))
     }
 
     /// The moment that many seconds after 1970-01-01 00:00:00, with the offset of the local time
@@ -258,9 +251,9 @@ impl Started {
         let day = day_of_year - (153 * month + 2) / 5 + 1;
         let month = if month < 10 { month + 3 } else { month - 9 };
         let year = era.checked_mul(400)? + year + u64::from(month <= 2);
-        let small = |number: u64| u8::try_from(number).ok();
+        let small = |number: u64| u16::try_from(number).ok();
         Self::new(
-            u16::try_from(year).ok()?,
+            small(year)?,
             small(month)?,
             small(day)?,
             small(second / 3600)?,
@@ -271,28 +264,13 @@ impl Started {
 
     /// Form for a folder's name, which sorts by time: `2026-11-24-154205`.
     pub fn file_name(self) -> String {
-        let Self {
-            year,
-            month,
-            day,
-            hour,
-            minute,
-            second,
-        } = self;
-        format!("{year:04}-{month:02}-{day:02}-{hour:02}{minute:02}{second:02}")
+        self.to_string().replace(' ', "-").replace(':', "")
     }
 }
 
 impl fmt::Display for Started {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            year,
-            month,
-            day,
-            hour,
-            minute,
-            second,
-        } = self;
+        let [year, month, day, hour, minute, second] = self.0;
         write!(
             f,
             "{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}"
@@ -312,16 +290,10 @@ impl TryFrom<String> for Started {
     fn try_from(text: String) -> Result<Self, SessionError> {
         let parsed = || {
             let (date, time) = text.split_once(' ')?;
-            let mut date = date.splitn(3, '-');
-            let mut time = time.splitn(3, ':');
-            Self::new(
-                date.next()?.parse().ok()?,
-                date.next()?.parse().ok()?,
-                date.next()?.parse().ok()?,
-                time.next()?.parse().ok()?,
-                time.next()?.parse().ok()?,
-                time.next()?.parse().ok()?,
-            )
+            let numbers = date.splitn(3, '-').chain(time.splitn(3, ':'));
+            let numbers: Option<Vec<u16>> = numbers.map(|number| number.parse().ok()).collect();
+            let [year, month, day, hour, minute, second]: [u16; 6] = numbers?.try_into().ok()?;
+            Self::new(year, month, day, hour, minute, second)
         };
         parsed().ok_or_else(|| SessionError::Date(text.clone()))
     }

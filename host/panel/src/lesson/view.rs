@@ -45,7 +45,7 @@ pub struct View {
     /// Whether the current trial has begun.
     pub began: bool,
     /// The knee; `None` while it is hidden.
-    pub knee: Option<KneeView>,
+    pub knee: Option<Knee>,
     /// Answers to all trials so far.
     pub answers: Vec<AnswerView>,
     /// Whether the lesson has ended.
@@ -54,37 +54,6 @@ pub struct View {
     pub choices: Choices,
     /// Results, once a blind lesson has ended.
     pub summary: Option<Summary>,
-}
-
-/// The knee of the current trial.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct KneeView {
-    /// Name of the preset, or "healthy".
-    pub preset: String,
-    /// Title of the preset.
-    pub title: String,
-    /// Disorder, if the preset says it.
-    pub disorder: Option<Finding>,
-    /// Level, if there is one.
-    #[serde(with = "level_name")]
-    pub level: Option<Level>,
-}
-
-impl From<&Knee> for KneeView {
-    fn from(knee: &Knee) -> Self {
-        let Knee {
-            preset,
-            title,
-            disorder,
-            level,
-        } = knee.clone();
-        Self {
-            preset,
-            title,
-            disorder,
-            level,
-        }
-    }
 }
 
 /// An answer.
@@ -155,7 +124,7 @@ impl Lesson {
             target: planned.and_then(|knee| knee.target.clone()),
             time_s: planned.and_then(|knee| knee.time_s),
             began: self.began(),
-            knee: (!self.is_hidden()).then(|| KneeView::from(self.knee())),
+            knee: (!self.is_hidden()).then(|| self.knee().clone()),
             answers: self.answers().iter().map(|a| self.judged(a)).collect(),
             ended: self.ended(),
             choices: Choices::all(),

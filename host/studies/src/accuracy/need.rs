@@ -14,49 +14,35 @@ pub type Need = limits::Limits<Criterion>;
 /// One limit.
 pub type Limit = limits::Limit<Criterion>;
 
-/// An error that can be limited.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Criterion {
-    /// Root mean square error of the torque as it is held for a step.
-    Torque,
-    /// Largest error of the held torque.
-    PeakTorque,
-    /// Root mean square torque error at the ends of steps alone.
-    TorqueAtTick,
-    /// Largest torque error at the end of a step.
-    PeakTorqueAtTick,
-    /// Worst error of an event's time.
-    Event,
-    /// Worst error of the time between neighbouring events.
-    Interval,
-    /// Relative error of the cycle frequency.
-    Frequency,
+crepitus_model::named! {
+    /// An error that can be limited.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Criterion {
+        /// Root mean square error of the torque as it is held for a step.
+        Torque => "torque",
+        /// Largest error of the held torque.
+        PeakTorque => "peak-torque",
+        /// Root mean square torque error at the ends of steps alone.
+        TorqueAtTick => "torque-at-tick",
+        /// Largest torque error at the end of a step.
+        PeakTorqueAtTick => "peak-torque-at-tick",
+        /// Worst error of an event's time.
+        Event => "event",
+        /// Worst error of the time between neighbouring events.
+        Interval => "interval",
+        /// Relative error of the cycle frequency.
+        Frequency => "frequency",
+    }
 }
 
 impl Limited for Criterion {
-    const ALL: &'static [Self] = &[
-        Self::Torque,
-        Self::PeakTorque,
-        Self::TorqueAtTick,
-        Self::PeakTorqueAtTick,
-        Self::Event,
-        Self::Interval,
-        Self::Frequency,
-    ];
+    const ALL: &'static [Self] = &Self::ALL;
     const LIMITS: &'static str = "need";
     const EXAMPLE: &'static str = "torque=1e-2,interval=5e-4";
 
     fn key(self) -> &'static str {
-        match self {
-            Self::Torque => "torque",
-            Self::PeakTorque => "peak-torque",
-            Self::TorqueAtTick => "torque-at-tick",
-            Self::PeakTorqueAtTick => "peak-torque-at-tick",
-            Self::Event => "event",
-            Self::Interval => "interval",
-            Self::Frequency => "frequency",
-        }
+        self.name()
     }
 
     fn meaning(self) -> &'static str {

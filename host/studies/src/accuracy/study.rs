@@ -50,17 +50,10 @@ pub struct Plan {
 pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<Study, StudyError> {
     let begun = Instant::now();
     let mut study = Study {
-        scenes: Vec::new(),
         steps_s: plan.steps_s.clone(),
         timing_repeats: plan.repeats,
         refused: refused(&plan.scenes),
-        skipped: Vec::new(),
-        orders: Vec::new(),
-        wall_s: 0.0,
-        target: None,
-        symptoms: Vec::new(),
-        actuator: Vec::new(),
-        points: Vec::new(),
+        ..Study::default()
     };
     let mut work = Work {
         watcher,

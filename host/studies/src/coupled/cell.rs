@@ -18,30 +18,20 @@ const QUIET_COUNTS: f64 = 2.0;
 /// A ripple below this share of that in the window before is settling.
 const SETTLING: f64 = 0.7;
 
-/// Behaviour of the shaft while the hand rests.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// A shaft at rest.
-    Quiet,
-    /// A decaying oscillation.
-    Settles,
-    /// A sustained or growing oscillation.
-    Rings,
-    /// The device refuses the joint: see
-    /// [`most_rad_per_count`](crepitus_model::render::turn_back::most_rad_per_count).
-    Refused,
-}
-
-impl Verdict {
-    /// Name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Quiet => "quiet",
-            Self::Settles => "settles",
-            Self::Rings => "rings",
-            Self::Refused => "refused",
-        }
+crepitus_model::named! {
+    /// Behaviour of the shaft while the hand rests.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Verdict {
+        /// A shaft at rest.
+        Quiet => "quiet",
+        /// A decaying oscillation.
+        Settles => "settles",
+        /// A sustained or growing oscillation.
+        Rings => "rings",
+        /// The device refuses the joint: see
+        /// [`most_rad_per_count`](crepitus_model::render::turn_back::most_rad_per_count).
+        Refused => "refused",
     }
 }
 

@@ -20,6 +20,7 @@ use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::render::effects::friction_compensation::least_left_nm;
 use crepitus_plant::effect::Effect;
 use crepitus_plant::effects::{cuff, drivetrain, hand};
+use crepitus_plant::spectrum::Complex;
 use std::f64::consts::TAU;
 
 /// Largest stiffness by each criterion, N·m/rad.
@@ -73,66 +74,39 @@ fn shaft_inertia_kg_m2() -> f64 {
     default(&drivetrain::EFFECT, "inertia_kg_m2") + default(&cuff::EFFECT, "brace_inertia_kg_m2")
 }
 
-/// A complex number.
-#[derive(Clone, Copy)]
-struct Complex(f64, f64);
-
-impl Complex {
-    fn plus(self, other: Self) -> Self {
-        Self(self.0 + other.0, self.1 + other.1)
-    }
-
-    fn times(self, other: Self) -> Self {
-        Self(
-            self.0 * other.0 - self.1 * other.1,
-            self.0 * other.1 + self.1 * other.0,
-        )
-    }
-
-    fn over(self, other: Self) -> Self {
-        let square = other.0 * other.0 + other.1 * other.1;
-        let Self(re, im) = self.times(Self(other.0, -other.1));
-        Self(re / square, im / square)
-    }
-
-    fn turned(radians: f64) -> Self {
-        Self(radians.cos(), radians.sin())
-    }
-}
-
 /// Torque at the shaft for an angle there, of everything but the device, at an
 /// angular frequency: rotor and brace, cuff, arm.
-fn mechanics(w: f64, damping: f64) -> Complex {
+fn mechanics(w: f64, damping: f64) -> Complex<f64> {
     let square = default(&hand::EFFECT, "lever_m").powi(2);
     let of_hand = |key| default(&hand::EFFECT, key) * square;
-    let arm = Complex(
+    let arm = Complex::new(
         of_hand("stiffness_n_per_m") - of_hand("mass_kg") * w * w,
         of_hand("damping_ns_per_m") * w,
     );
-    let link = Complex(default(&cuff::EFFECT, "stiffness_nm_per_rad"), damping * w);
-    let through = link.times(arm).over(link.plus(arm));
-    through.plus(Complex(-shaft_inertia_kg_m2() * w * w, 0.0))
+    let link = Complex::new(default(&cuff::EFFECT, "stiffness_nm_per_rad"), damping * w);
+    let through = link * arm / (link + arm);
+    through + Complex::new(-shaft_inertia_kg_m2() * w * w, 0.0)
 }
 
 /// Transfer function from commanded to acting torque: held for a tick, and
 /// behind a current loop that reduces its error by the share g in each.
-fn device(w: f64, lag: Lag) -> Complex {
+fn device(w: f64, lag: Lag) -> Complex<f64> {
     let half = w * TICK_S / 2.0;
-    let held = Complex::turned(-half).times(Complex(half.sin() / half, 0.0));
+    let turned = |radians: f64| Complex::new(radians.cos(), radians.sin());
+    let held = turned(-half) * Complex::new(half.sin() / half, 0.0);
     if lag == Lag::Ideal {
         return held;
     }
     let gain = lag.gain();
-    let tick = Complex::turned(-w * TICK_S);
-    let behind = Complex(1.0, 0.0).plus(tick.times(Complex(gain - 1.0, 0.0)));
-    held.times(tick.times(Complex(gain, 0.0)).over(behind))
+    let tick = turned(-w * TICK_S);
+    let behind = Complex::new(1.0, 0.0) + tick * Complex::new(gain - 1.0, 0.0);
+    held * (tick * Complex::new(gain, 0.0) / behind)
 }
 
 /// Stiffness at which an oscillation of this angular frequency is sustained;
 /// only a real one exists.
-fn balancing(w: f64, lag: Lag, damping: f64) -> Complex {
-    let Complex(re, im) = mechanics(w, damping).over(device(w, lag));
-    Complex(-re, -im)
+fn balancing(w: f64, lag: Lag, damping: f64) -> Complex<f64> {
+    -(mechanics(w, damping) / device(w, lag))
 }
 
 /// The lowest stiffness of a sustained oscillation, N·m/rad.
@@ -143,19 +117,19 @@ fn linear_onset(lag: Lag, damping: f64) -> f64 {
     let mut least = f64::INFINITY;
     for n in 0..steps {
         let (mut low, mut high) = (at(n), at(n + 1));
-        let rises = balancing(low, lag, damping).1 < 0.0;
-        if rises == (balancing(high, lag, damping).1 < 0.0) {
+        let rises = balancing(low, lag, damping).im < 0.0;
+        if rises == (balancing(high, lag, damping).im < 0.0) {
             continue;
         }
         for _ in 0..60 {
             let middle = f64::midpoint(low, high);
-            if (balancing(middle, lag, damping).1 < 0.0) == rises {
+            if (balancing(middle, lag, damping).im < 0.0) == rises {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        let stiffness = balancing(low, lag, damping).0;
+        let stiffness = balancing(low, lag, damping).re;
         if stiffness > 0.0 {
             least = least.min(stiffness);
         }

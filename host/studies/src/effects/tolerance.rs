@@ -11,29 +11,27 @@ pub type Tolerance = limits::Limits<Criterion>;
 /// One limit.
 pub type Limit = limits::Limit<Criterion>;
 
-/// A difference that can be limited.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Criterion {
-    /// Root mean square of the torque's difference.
-    Torque,
-    /// Largest magnitude of the torque's difference.
-    Peak,
-    /// Relative difference of the numbers of events.
-    Events,
+crepitus_model::named! {
+    /// A difference that can be limited.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Criterion {
+        /// Root mean square of the torque's difference.
+        Torque => "torque",
+        /// Largest magnitude of the torque's difference.
+        Peak => "peak",
+        /// Relative difference of the numbers of events.
+        Events => "events",
+    }
 }
 
 impl Limited for Criterion {
-    const ALL: &'static [Self] = &[Self::Torque, Self::Peak, Self::Events];
+    const ALL: &'static [Self] = &Self::ALL;
     const LIMITS: &'static str = "tolerance";
     const EXAMPLE: &'static str = "torque=5e-3,events=0.01";
 
     fn key(self) -> &'static str {
-        match self {
-            Self::Torque => "torque",
-            Self::Peak => "peak",
-            Self::Events => "events",
-        }
+        self.name()
     }
 
     fn meaning(self) -> &'static str {

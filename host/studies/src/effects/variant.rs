@@ -5,26 +5,17 @@ use crepitus_plant::effects::EFFECTS;
 use crepitus_scene::Scene;
 use serde::Serialize;
 
-/// Kind of change from the scene to a variant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Change {
-    /// The scene itself.
-    Scene,
-    /// An effect is left out.
-    Without,
-    /// An effect is added, at its defaults.
-    With,
-}
-
-impl Change {
-    /// Name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Scene => "scene",
-            Self::Without => "without",
-            Self::With => "with",
-        }
+crepitus_model::named! {
+    /// Kind of change from the scene to a variant.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Change {
+        /// The scene itself.
+        Scene => "scene",
+        /// An effect is left out.
+        Without => "without",
+        /// An effect is added, at its defaults.
+        With => "with",
     }
 }
 

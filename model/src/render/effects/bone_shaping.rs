@@ -71,70 +71,21 @@ use crate::render::effects::{
 settings! {
     /// The bone, and what its ringing may cost.
     pub struct BoneShapingSettings, group "bone-shaping" {
-        render {
-            id: 13 always,
-            choice: ["off", "on"],
-            default: 0,
-            meaning: "whether the bone rings when the joint clicks",
-        },
+        render (13 always) ["off", "on"], 0, "whether the bone rings when the joint clicks";
     } chosen {
-        output {
-            id: 138 always,
-            choice: ["motor", "actuator"],
-            default: 0,
-            meaning: "what the hand gets the ringing from: the motor, or the vibration-actuator alone",
-        },
+        output (138 always) ["motor", "actuator"], 0,
+            "what the hand gets the ringing from: the motor, or the vibration-actuator alone";
     } {
-        frequency_hz {
-            id: 14 always,
-            symbol: "f",
-            unit: "Hz",
-            range: 20.0..=1000.0,
-            default: 115.0,
-            meaning: "frequency of the bone: 115 Hz healthy, 67 Hz with a meniscal tear",
-        },
-        damping_ratio {
-            id: 15 always,
-            symbol: "ζ",
-            unit: "1",
-            range: 0.005..=0.99,
-            default: 0.098,
-            meaning: "damping ratio of the bone: 0.098 healthy, 0.036 with a meniscal tear",
-        },
-        gain {
-            id: 16 always,
-            symbol: "g",
-            unit: "1",
-            range: 0.0..=10.0,
-            default: 1.0,
-            meaning: "ringing per jump of the torque; 0 is none",
-        },
+        frequency_hz (14 always) "f" "Hz", 20.0..=1000.0, 115.0,
+            "frequency of the bone: 115 Hz healthy, 67 Hz with a meniscal tear";
+        damping_ratio (15 always) "ζ" "1", 0.005..=0.99, 0.098,
+            "damping ratio of the bone: 0.098 healthy, 0.036 with a meniscal tear";
+        gain (16 always) "g" "1", 0.0..=10.0, 1.0, "ringing per jump of the torque; 0 is none";
         // The slew limit exempts steps up to the largest.
-        limit_nm {
-            id: 17 always,
-            symbol: "Tb",
-            unit: "N·m",
-            range: 0.0..=0.6,
-            default: 0.6,
-            meaning: "largest torque that is added",
-        },
+        limit_nm (17 always) "Tb" "N·m", 0.0..=0.6, 0.6, "largest torque that is added";
         // The least keeps the energy account exact up to 10 rad/s at 20 kHz.
-        budget_j {
-            id: 18 always,
-            symbol: "E",
-            unit: "J",
-            range: 5e-3..=0.1,
-            default: 0.01,
-            meaning: "energy that the ringing may return at once",
-        },
-        refill_w {
-            id: 19 always,
-            symbol: "P",
-            unit: "W",
-            range: 0.0..=0.2,
-            default: 0.1,
-            meaning: "continuous power that the ringing may return",
-        },
+        budget_j (18 always) "E" "J", 5e-3..=0.1, 0.01, "energy that the ringing may return at once";
+        refill_w (19 always) "P" "W", 0.0..=0.2, 0.1, "continuous power that the ringing may return";
     }
 }
 

@@ -27,98 +27,24 @@ use crate::render::position::{Position, Scale, Travel, decay};
 settings! {
     /// The clasp-knife phenomenon.
     pub struct ClaspKnifeSettings, group "clasp-knife" {
-        render {
-            id: 90 always,
-            choice: ["off", "on"],
-            default: 0,
-            meaning: "whether a muscle's resistance collapses",
-        },
+        render (90 always) ["off", "on"], 0, "whether a muscle's resistance collapses";
     } chosen {
-        muscles {
-            id: 91 always,
-            choice: ["extensors", "flexors"],
-            default: 0,
-            meaning: "which muscles: extensors resist flexion, flexors extension",
-        },
-        trigger {
-            id: 92 always,
-            choice: ["angle", "torque"],
-            default: 0,
-            meaning: "what makes it collapse",
-        },
+        muscles (91 always) ["extensors", "flexors"], 0, "which muscles: extensors resist flexion, flexors extension";
+        trigger (92 always) ["angle", "torque"], 0, "what makes it collapse";
     } {
-        onset_deg {
-            id: 93 always,
-            symbol: "φon",
-            unit: "deg",
-            range: 0.0..=150.0,
-            default: 30.0,
-            meaning: "angle at which resistance begins to build (estimate)",
-        },
-        release_deg {
-            id: 94 always,
-            symbol: "φr",
-            unit: "deg",
-            range: 0.0..=150.0,
-            default: 75.0,
-            meaning: "angle at which it collapses, further in the stretch's sense (estimate); trigger angle",
-        },
-        onset_torque_nm {
-            id: 95 always,
-            symbol: "T0",
-            unit: "N·m",
-            range: 0.0..=4.5,
-            default: 0.8,
-            meaning: "resistance at its onset (estimate)",
-        },
-        slope_nm_per_rad {
-            id: 96 always,
-            symbol: "k",
-            unit: "N·m/rad",
-            range: 0.0..=20.0,
-            default: 3.0,
-            meaning: "how it grows from there (estimate)",
-        },
-        residual_share {
-            id: 97 always,
-            symbol: "r",
-            unit: "1",
-            range: 0.0..=0.9,
-            default: 0.15,
-            meaning: "share of it that is left after the collapse (estimate)",
-        },
-        collapse_s {
-            id: 98 always,
-            symbol: "τ",
-            unit: "s",
-            range: 0.005..=0.3,
-            default: 0.03,
-            meaning: "time in which it collapses (estimate)",
-        },
-        rearm_deg {
-            id: 99 always,
-            symbol: "Δ",
-            unit: "deg",
-            range: 2.0..=60.0,
-            default: 10.0,
-            meaning: "how far below the onset the limb is returned before it builds again (estimate)",
-        },
-        catch_stiffness_nm_per_rad {
-            id: 100 always,
-            symbol: "σ",
-            unit: "N·m/rad",
-            range: 10.0..=300.0,
-            default: 60.0,
-            meaning: "stiffness with which it builds up (estimate)",
-        },
-        release_torque_nm {
-            id: 101 always,
-            symbol: "Tr",
-            unit: "N·m",
-            range: 0.2..=4.5,
-            default: 2.5,
-            meaning: "torque at which it collapses (estimate); trigger torque",
-        },
+        onset_deg (93 always) "φon" "deg", 0.0..=150.0, 30.0, "angle at which resistance begins to build (estimate)";
+        release_deg (94 always) "φr" "deg", 0.0..=150.0, 75.0,
+            "angle at which it collapses, further in the stretch's sense (estimate); trigger angle";
+        onset_torque_nm (95 always) "T0" "N·m", 0.0..=4.5, 0.8, "resistance at its onset (estimate)";
+        slope_nm_per_rad (96 always) "k" "N·m/rad", 0.0..=20.0, 3.0, "how it grows from there (estimate)";
+        residual_share (97 always) "r" "1", 0.0..=0.9, 0.15, "share of it that is left after the collapse (estimate)";
+        collapse_s (98 always) "τ" "s", 0.005..=0.3, 0.03, "time in which it collapses (estimate)";
+        rearm_deg (99 always) "Δ" "deg", 2.0..=60.0, 10.0,
+            "how far below the onset the limb is returned before it builds again (estimate)";
+        catch_stiffness_nm_per_rad (100 always) "σ" "N·m/rad", 10.0..=300.0, 60.0,
+            "stiffness with which it builds up (estimate)";
+        release_torque_nm (101 always) "Tr" "N·m", 0.2..=4.5, 2.5,
+            "torque at which it collapses (estimate); trigger torque";
     }
 }
 

@@ -25,92 +25,22 @@ use crate::render::position::{Position, Scale, Travel};
 settings! {
     /// Clonus of one muscle group.
     pub struct ClonusSettings, group "clonus" {
-        render {
-            id: 104 always,
-            choice: ["off", "on"],
-            default: 0,
-            meaning: "whether a quick stretch starts clonus",
-        },
+        render (104 always) ["off", "on"], 0, "whether a quick stretch starts clonus";
     } chosen {
-        muscles {
-            id: 105 always,
-            choice: ["extensors", "flexors"],
-            default: 0,
-            meaning: "which muscles: extensors beat against flexion, flexors against extension",
-        },
+        muscles (105 always) ["extensors", "flexors"], 0,
+            "which muscles: extensors beat against flexion, flexors against extension";
     } {
-        frequency_hz {
-            id: 106 always,
-            symbol: "f",
-            unit: "Hz",
-            range: 3.0..=10.0,
-            default: 6.0,
-            meaning: "beats a second, once they are steady (sourced)",
-        },
-        push_share {
-            id: 107 always,
-            symbol: "D",
-            unit: "1",
-            range: 0.2..=0.8,
-            default: 0.45,
-            meaning: "share of the time in which the muscle pushes (sourced)",
-        },
-        first_stretch {
-            id: 108 always,
-            symbol: "ε",
-            unit: "1",
-            range: 0.0..=1.0,
-            default: 0.3,
-            meaning: "by how much the first interval is longer; half as much with every further one (sourced in kind)",
-        },
-        amplitude_nm {
-            id: 109 always,
-            symbol: "A",
-            unit: "N·m",
-            range: 0.0..=4.5,
-            default: 1.5,
-            meaning: "height of a beat (estimate)",
-        },
-        hold_deg {
-            id: 110 always,
-            symbol: "φh",
-            unit: "deg",
-            range: 0.0..=140.0,
-            default: 60.0,
-            meaning: "angle beyond which the stretch is held (estimate)",
-        },
-        hysteresis_deg {
-            id: 111 always,
-            symbol: "Δh",
-            unit: "deg",
-            range: 1.0..=30.0,
-            default: 5.0,
-            meaning: "return that stops the beats (estimate)",
-        },
-        start_velocity_deg_s {
-            id: 112 always,
-            symbol: "Ωon",
-            unit: "deg/s",
-            range: 20.0..=400.0,
-            default: 100.0,
-            meaning: "least speed of the stretch that starts them (estimate)",
-        },
-        delay_s {
-            id: 113 always,
-            symbol: "τd",
-            unit: "s",
-            range: 0.0..=0.2,
-            default: 0.05,
-            meaning: "time from the stretch to the first beat (sourced)",
-        },
-        beats {
-            id: 114 always,
-            symbol: "n",
-            unit: "1",
-            range: 0.0..=200.0,
-            default: 0.0,
-            meaning: "beats of one stretch; 0 goes on while it is held",
-        },
+        frequency_hz (106 always) "f" "Hz", 3.0..=10.0, 6.0, "beats a second, once they are steady (sourced)";
+        push_share (107 always) "D" "1", 0.2..=0.8, 0.45, "share of the time in which the muscle pushes (sourced)";
+        first_stretch (108 always) "ε" "1", 0.0..=1.0, 0.3,
+            "by how much the first interval is longer; half as much with every further one (sourced in kind)";
+        amplitude_nm (109 always) "A" "N·m", 0.0..=4.5, 1.5, "height of a beat (estimate)";
+        hold_deg (110 always) "φh" "deg", 0.0..=140.0, 60.0, "angle beyond which the stretch is held (estimate)";
+        hysteresis_deg (111 always) "Δh" "deg", 1.0..=30.0, 5.0, "return that stops the beats (estimate)";
+        start_velocity_deg_s (112 always) "Ωon" "deg/s", 20.0..=400.0, 100.0,
+            "least speed of the stretch that starts them (estimate)";
+        delay_s (113 always) "τd" "s", 0.0..=0.2, 0.05, "time from the stretch to the first beat (sourced)";
+        beats (114 always) "n" "1", 0.0..=200.0, 0.0, "beats of one stretch; 0 goes on while it is held";
     }
 }
 

@@ -28,84 +28,20 @@ use turn::Turn;
 settings! {
     /// Cogwheel rigidity.
     pub struct CogwheelSettings, group "cogwheel" {
-        render {
-            id: 60 always,
-            choice: ["off", "on"],
-            default: 0,
-            meaning: "whether the joint resists as a ratchet does",
-        },
+        render (60 always) ["off", "on"], 0, "whether the joint resists as a ratchet does";
     } chosen {
-        mode {
-            id: 61 always,
-            choice: ["time", "space"],
-            default: 0,
-            meaning: "whether teeth follow each other in time or in angle",
-        },
+        mode (61 always) ["time", "space"], 0, "whether teeth follow each other in time or in angle";
     } {
-        torque_nm {
-            id: 62 always,
-            symbol: "Th",
-            unit: "N·m",
-            range: 0.0..=4.5,
-            default: 2.0,
-            meaning: "resistance at the height of a tooth (estimate)",
-        },
-        low_share {
-            id: 63 always,
-            symbol: "ρ",
-            unit: "1",
-            range: 0.0..=1.0,
-            default: 0.4,
-            meaning: "share of it that is left between two teeth (estimate)",
-        },
-        presliding_deg {
-            id: 64 always,
-            symbol: "δ",
-            unit: "deg",
-            range: 0.2..=10.0,
-            default: 1.5,
-            meaning: "travel over which the resistance builds up (sourced)",
-        },
-        frequency_hz {
-            id: 65 always,
-            symbol: "f",
-            unit: "Hz",
-            range: 3.0..=12.0,
-            default: 6.25,
-            meaning: "teeth a second, in mode time (sourced)",
-        },
-        duty {
-            id: 66 always,
-            symbol: "D",
-            unit: "1",
-            range: 0.1..=0.9,
-            default: 0.5,
-            meaning: "share of a tooth that is high (estimate)",
-        },
-        pitch_deg {
-            id: 67 always,
-            symbol: "λ",
-            unit: "deg",
-            range: 1.0..=30.0,
-            default: 7.5,
-            meaning: "angle from tooth to tooth, in mode space (estimate)",
-        },
-        elastic_nm_per_rad {
-            id: 68 always,
-            symbol: "ke",
-            unit: "N·m/rad",
-            range: 0.0..=10.0,
-            default: 0.0,
-            meaning: "stiffness about the neutral angle (estimate)",
-        },
-        neutral_deg {
-            id: 69 always,
-            symbol: "φ₀",
-            unit: "deg",
-            range: 0.0..=140.0,
-            default: 45.0,
-            meaning: "angle at which the stiffness has no torque (estimate)",
-        },
+        torque_nm (62 always) "Th" "N·m", 0.0..=4.5, 2.0, "resistance at the height of a tooth (estimate)";
+        low_share (63 always) "ρ" "1", 0.0..=1.0, 0.4, "share of it that is left between two teeth (estimate)";
+        presliding_deg (64 always) "δ" "deg", 0.2..=10.0, 1.5, "travel over which the resistance builds up (sourced)";
+        frequency_hz (65 always) "f" "Hz", 3.0..=12.0, 6.25, "teeth a second, in mode time (sourced)";
+        duty (66 always) "D" "1", 0.1..=0.9, 0.5, "share of a tooth that is high (estimate)";
+        pitch_deg (67 always) "λ" "deg", 1.0..=30.0, 7.5, "angle from tooth to tooth, in mode space (estimate)";
+        elastic_nm_per_rad (68 always) "ke" "N·m/rad", 0.0..=10.0, 0.0,
+            "stiffness about the neutral angle (estimate)";
+        neutral_deg (69 always) "φ₀" "deg", 0.0..=140.0, 45.0,
+            "angle at which the stiffness has no torque (estimate)";
     }
 }
 

@@ -59,37 +59,14 @@ use crate::render::effects::{
 settings! {
     /// Assumed friction of the gear, and the share of it to cancel.
     pub struct FrictionCompensationSettings, group "friction-compensation" {
-        render {
-            id: 9 always,
-            choice: ["off", "on"],
-            default: 0,
-            meaning: "whether a share of the gear's friction is cancelled",
-        },
+        render (9 always) ["off", "on"], 0, "whether a share of the gear's friction is cancelled";
     } {
-        friction_nm {
-            id: 10 always,
-            symbol: "Tf",
-            unit: "N·m",
-            range: 0.0..=2.0,
-            default: 0.5,
-            meaning: "dry friction of the gear that the device assumes, at the joint",
-        },
-        share {
-            id: 11 always,
-            symbol: "σ",
-            unit: "1",
-            range: 0.0..=0.9,
-            default: 0.8,
-            meaning: "share of the friction that is cancelled; the rest keeps sampled springs passive",
-        },
-        fade_rad_s {
-            id: 12 always,
-            symbol: "Ωf",
-            unit: "rad/s",
-            range: 1e-3..=10.0,
-            default: 0.05,
-            meaning: "speed of the joint below which the compensation fades out to zero",
-        },
+        friction_nm (10 always) "Tf" "N·m", 0.0..=2.0, 0.5,
+            "dry friction of the gear that the device assumes, at the joint";
+        share (11 always) "σ" "1", 0.0..=0.9, 0.8,
+            "share of the friction that is cancelled; the rest keeps sampled springs passive";
+        fade_rad_s (12 always) "Ωf" "rad/s", 1e-3..=10.0, 0.05,
+            "speed of the joint below which the compensation fades out to zero";
     }
 }
 

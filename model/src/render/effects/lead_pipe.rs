@@ -23,45 +23,15 @@ use crate::render::position::{Position, Scale, Travel};
 settings! {
     /// Lead-pipe rigidity.
     pub struct LeadPipeSettings, group "lead-pipe" {
-        render {
-            id: 52 always,
-            choice: ["off", "on"],
-            default: 0,
-            meaning: "whether the joint resists as a lead pipe does",
-        },
+        render (52 always) ["off", "on"], 0, "whether the joint resists as a lead pipe does";
     } {
-        torque_nm {
-            id: 53 always,
-            symbol: "Tc",
-            unit: "N·m",
-            range: 0.0..=4.5,
-            default: 1.2,
-            meaning: "resistance, the same in both directions and at any speed (estimate)",
-        },
-        presliding_deg {
-            id: 54 always,
-            symbol: "δ",
-            unit: "deg",
-            range: 0.2..=10.0,
-            default: 1.5,
-            meaning: "travel over which the resistance builds up (sourced)",
-        },
-        elastic_nm_per_rad {
-            id: 55 always,
-            symbol: "ke",
-            unit: "N·m/rad",
-            range: 0.0..=10.0,
-            default: 0.0,
-            meaning: "stiffness about the neutral angle (estimate)",
-        },
-        neutral_deg {
-            id: 56 always,
-            symbol: "φ₀",
-            unit: "deg",
-            range: 0.0..=140.0,
-            default: 45.0,
-            meaning: "angle at which the stiffness has no torque (estimate)",
-        },
+        torque_nm (53 always) "Tc" "N·m", 0.0..=4.5, 1.2,
+            "resistance, the same in both directions and at any speed (estimate)";
+        presliding_deg (54 always) "δ" "deg", 0.2..=10.0, 1.5, "travel over which the resistance builds up (sourced)";
+        elastic_nm_per_rad (55 always) "ke" "N·m/rad", 0.0..=10.0, 0.0,
+            "stiffness about the neutral angle (estimate)";
+        neutral_deg (56 always) "φ₀" "deg", 0.0..=140.0, 45.0,
+            "angle at which the stiffness has no torque (estimate)";
     }
 }
 

@@ -31,93 +31,28 @@ use wall::Wall;
 settings! {
     /// Both ends of the range.
     pub struct RangeLimitSettings, group "range-limit" {
-        render {
-            id: 40 always,
-            choice: ["off", "on"],
-            default: 0,
-            meaning: "whether the range of motion is limited",
-        },
+        render (40 always) ["off", "on"], 0, "whether the range of motion is limited";
     } {
-        extension_limit_deg {
-            id: 41 always,
-            symbol: "φE",
-            unit: "deg",
-            range: -10.0..=150.0,
-            default: 10.0,
-            meaning: "angle at which the range ends in extension (estimate)",
-        },
-        flexion_limit_deg {
-            id: 42 always,
-            symbol: "φF",
-            unit: "deg",
-            range: 0.0..=160.0,
-            default: 120.0,
-            meaning: "angle at which the range ends in flexion, 5 deg or more beyond the other (estimate)",
-        },
-        extension_stiffness_nm_per_rad {
-            id: 43 always,
-            symbol: "K1",
-            unit: "N·m/rad",
-            range: 1.0..=600.0,
-            default: 60.0,
-            meaning: "stiffness as the end in extension is met (derived)",
-        },
-        extension_stiffening_nm_per_rad2 {
-            id: 44 always,
-            symbol: "K2",
-            unit: "N·m/rad²",
-            range: 0.0..=5000.0,
-            default: 400.0,
-            meaning: "how it grows stiffer beyond the end in extension (derived)",
-        },
-        extension_loss {
-            id: 45 always,
-            symbol: "ψ",
-            unit: "1",
-            range: 0.0..=0.9,
-            default: 0.3,
-            meaning: "share of its energy that the end in extension does not return (estimate)",
-        },
-        extension_torque_nm {
-            id: 46 always,
-            symbol: "Tcap",
-            unit: "N·m",
-            range: 0.0..=6.5,
-            default: 4.0,
-            meaning: "torque at which the end in extension yields (derived)",
-        },
-        flexion_stiffness_nm_per_rad {
-            id: 47 always,
-            symbol: "K1",
-            unit: "N·m/rad",
-            range: 1.0..=600.0,
-            default: 60.0,
-            meaning: "stiffness as the end in flexion is met (derived)",
-        },
-        flexion_stiffening_nm_per_rad2 {
-            id: 48 always,
-            symbol: "K2",
-            unit: "N·m/rad²",
-            range: 0.0..=5000.0,
-            default: 400.0,
-            meaning: "how it grows stiffer beyond the end in flexion (derived)",
-        },
-        flexion_loss {
-            id: 49 always,
-            symbol: "ψ",
-            unit: "1",
-            range: 0.0..=0.9,
-            default: 0.3,
-            meaning: "share of its energy that the end in flexion does not return (estimate)",
-        },
-        flexion_torque_nm {
-            id: 50 always,
-            symbol: "Tcap",
-            unit: "N·m",
-            range: 0.0..=6.5,
-            default: 4.0,
-            meaning: "torque at which the end in flexion yields (derived)",
-        },
+        extension_limit_deg (41 always) "φE" "deg", -10.0..=150.0, 10.0,
+            "angle at which the range ends in extension (estimate)";
+        flexion_limit_deg (42 always) "φF" "deg", 0.0..=160.0, 120.0,
+            "angle at which the range ends in flexion, 5 deg or more beyond the other (estimate)";
+        extension_stiffness_nm_per_rad (43 always) "K1" "N·m/rad", 1.0..=600.0, 60.0,
+            "stiffness as the end in extension is met (derived)";
+        extension_stiffening_nm_per_rad2 (44 always) "K2" "N·m/rad²", 0.0..=5000.0, 400.0,
+            "how it grows stiffer beyond the end in extension (derived)";
+        extension_loss (45 always) "ψ" "1", 0.0..=0.9, 0.3,
+            "share of its energy that the end in extension does not return (estimate)";
+        extension_torque_nm (46 always) "Tcap" "N·m", 0.0..=6.5, 4.0,
+            "torque at which the end in extension yields (derived)";
+        flexion_stiffness_nm_per_rad (47 always) "K1" "N·m/rad", 1.0..=600.0, 60.0,
+            "stiffness as the end in flexion is met (derived)";
+        flexion_stiffening_nm_per_rad2 (48 always) "K2" "N·m/rad²", 0.0..=5000.0, 400.0,
+            "how it grows stiffer beyond the end in flexion (derived)";
+        flexion_loss (49 always) "ψ" "1", 0.0..=0.9, 0.3,
+            "share of its energy that the end in flexion does not return (estimate)";
+        flexion_torque_nm (50 always) "Tcap" "N·m", 0.0..=6.5, 4.0,
+            "torque at which the end in flexion yields (derived)";
     }
 }
 

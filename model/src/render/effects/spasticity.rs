@@ -25,130 +25,34 @@ use reflex::{Reflex, ReflexCoefficients};
 settings! {
     /// A spastic muscle.
     pub struct SpasticitySettings, group "spasticity" {
-        render {
-            id: 72 always,
-            choice: ["off", "on"],
-            default: 0,
-            meaning: "whether a muscle resists fast stretches",
-        },
+        render (72 always) ["off", "on"], 0, "whether a muscle resists fast stretches";
     } chosen {
-        form {
-            id: 73 always,
-            choice: ["catch", "reflex"],
-            default: 0,
-            meaning: "as an examiner describes it, or as the stretch reflex makes it",
-        },
-        muscles {
-            id: 74 always,
-            choice: ["extensors", "flexors"],
-            default: 0,
-            meaning: "which muscles: extensors resist flexion, flexors extension",
-        },
+        form (73 always) ["catch", "reflex"], 0, "as an examiner describes it, or as the stretch reflex makes it";
+        muscles (74 always) ["extensors", "flexors"], 0, "which muscles: extensors resist flexion, flexors extension";
     } {
-        threshold_deg {
-            id: 75 always,
-            symbol: "λ",
-            unit: "deg",
-            range: -30.0..=170.0,
-            default: 75.0,
-            meaning: "angle at which a slow stretch meets the threshold (estimate)",
-        },
-        velocity_shift_s {
-            id: 76 always,
-            symbol: "μ",
-            unit: "s",
-            range: 0.0..=0.5,
-            default: 0.25,
-            meaning: "how much earlier the threshold is for each rad/s of stretch (sourced; of a reflex, 0.27)",
-        },
-        torque_nm {
-            id: 77 always,
-            symbol: "Tmax",
-            unit: "N·m",
-            range: 0.0..=6.5,
-            default: 4.5,
-            meaning: "largest torque of the muscle (derived)",
-        },
-        threshold_velocity_deg_s {
-            id: 78 always,
-            symbol: "Ωth",
-            unit: "deg/s",
-            range: 5.0..=200.0,
-            default: 40.0,
-            meaning: "speed of stretch below which there is no catch (estimate); form catch",
-        },
-        velocity_torque_nms_per_rad {
-            id: 79 always,
-            symbol: "b",
-            unit: "N·m·s/rad",
-            range: 0.0..=2.0,
-            default: 0.67,
-            meaning: "torque of the catch for each rad/s of stretch (sourced); form catch",
-        },
-        residual_share {
-            id: 80 always,
-            symbol: "r",
-            unit: "1",
-            range: 0.0..=1.0,
-            default: 0.5,
-            meaning: "share of the catch that is left after its release (estimate); form catch",
-        },
-        stiffness_nm_per_rad {
-            id: 81 always,
-            symbol: "k",
-            unit: "N·m/rad",
-            range: 0.0..=10.0,
-            default: 1.0,
-            meaning: "how it grows beyond the catch (estimate); form catch",
-        },
-        release_s {
-            id: 82 always,
-            symbol: "τ",
-            unit: "s",
-            range: 0.01..=1.0,
-            default: 0.06,
-            meaning: "time in which the catch releases (estimate); form catch",
-        },
-        catch_stiffness_nm_per_rad {
-            id: 83 always,
-            symbol: "σ",
-            unit: "N·m/rad",
-            range: 10.0..=300.0,
-            default: 60.0,
-            meaning: "stiffness with which the catch builds up (estimate); form catch",
-        },
-        rearm_deg {
-            id: 84 always,
-            symbol: "Δ",
-            unit: "deg",
-            range: 2.0..=60.0,
-            default: 10.0,
-            meaning: "retreat from the catch after which there can be another (estimate); form catch",
-        },
-        gain_nm_per_rad {
-            id: 85 always,
-            symbol: "k",
-            unit: "N·m/rad",
-            range: 0.0..=20.0,
-            default: 2.43,
-            meaning: "torque of the muscle for each radian beyond the threshold (sourced); form reflex",
-        },
-        delay_s {
-            id: 86 always,
-            symbol: "τd",
-            unit: "s",
-            range: 0.0..=0.1,
-            default: 0.05,
-            meaning: "time from stretch to answer (sourced); form reflex",
-        },
-        activation_s {
-            id: 87 always,
-            symbol: "τa",
-            unit: "s",
-            range: 0.002..=0.1,
-            default: 0.01,
-            meaning: "time in which the muscle builds up its torque (sourced); form reflex",
-        },
+        threshold_deg (75 always) "λ" "deg", -30.0..=170.0, 75.0,
+            "angle at which a slow stretch meets the threshold (estimate)";
+        velocity_shift_s (76 always) "μ" "s", 0.0..=0.5, 0.25,
+            "how much earlier the threshold is for each rad/s of stretch (sourced; of a reflex, 0.27)";
+        torque_nm (77 always) "Tmax" "N·m", 0.0..=6.5, 4.5, "largest torque of the muscle (derived)";
+        threshold_velocity_deg_s (78 always) "Ωth" "deg/s", 5.0..=200.0, 40.0,
+            "speed of stretch below which there is no catch (estimate); form catch";
+        velocity_torque_nms_per_rad (79 always) "b" "N·m·s/rad", 0.0..=2.0, 0.67,
+            "torque of the catch for each rad/s of stretch (sourced); form catch";
+        residual_share (80 always) "r" "1", 0.0..=1.0, 0.5,
+            "share of the catch that is left after its release (estimate); form catch";
+        stiffness_nm_per_rad (81 always) "k" "N·m/rad", 0.0..=10.0, 1.0,
+            "how it grows beyond the catch (estimate); form catch";
+        release_s (82 always) "τ" "s", 0.01..=1.0, 0.06, "time in which the catch releases (estimate); form catch";
+        catch_stiffness_nm_per_rad (83 always) "σ" "N·m/rad", 10.0..=300.0, 60.0,
+            "stiffness with which the catch builds up (estimate); form catch";
+        rearm_deg (84 always) "Δ" "deg", 2.0..=60.0, 10.0,
+            "retreat from the catch after which there can be another (estimate); form catch";
+        gain_nm_per_rad (85 always) "k" "N·m/rad", 0.0..=20.0, 2.43,
+            "torque of the muscle for each radian beyond the threshold (sourced); form reflex";
+        delay_s (86 always) "τd" "s", 0.0..=0.1, 0.05, "time from stretch to answer (sourced); form reflex";
+        activation_s (87 always) "τa" "s", 0.002..=0.1, 0.01,
+            "time in which the muscle builds up its torque (sourced); form reflex";
     }
 }
 

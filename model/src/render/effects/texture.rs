@@ -27,85 +27,24 @@ use asperities::{Beside, Pair};
 settings! {
     /// A rough joint.
     pub struct TextureSettings, group "texture" {
-        render {
-            id: 118 always,
-            choice: ["off", "on"],
-            default: 0,
-            meaning: "whether the joint has asperities at fixed angles",
-        },
+        render (118 always) ["off", "on"], 0, "whether the joint has asperities at fixed angles";
     } {
-        base_nm {
-            id: 119 always,
-            symbol: "Tb",
-            unit: "N·m",
-            range: 0.0..=2.0,
-            default: 0.1,
-            meaning: "resistance between asperities (estimate, in the paper's range)",
-        },
-        peak_nm {
-            id: 120 always,
-            symbol: "Tp",
-            unit: "N·m",
-            range: 0.0..=4.0,
-            default: 0.4,
-            meaning: "resistance at an asperity, no less than between them (estimate, in the paper's range)",
-        },
-        pitch_deg {
-            id: 121 always,
-            symbol: "λ",
-            unit: "deg",
-            range: 0.2..=20.0,
-            default: 1.5,
-            meaning: "angle from asperity to asperity (estimate)",
-        },
-        width_share {
-            id: 122 always,
-            symbol: "w",
-            unit: "1",
-            range: 0.1..=1.0,
-            default: 0.6,
-            meaning: "share of the pitch over which the resistance rises (estimate)",
-        },
-        irregularity {
-            id: 123 always,
-            symbol: "j",
-            unit: "1",
-            range: 0.0..=0.9,
-            default: 0.3,
-            meaning: "how much asperities differ in place and height (estimate)",
-        },
-        seed {
-            id: 124 always,
-            symbol: "seed",
-            unit: "1",
-            range: 0.0..=4_294_967_295.0,
-            default: 1.0,
-            meaning: "another whole number is another joint",
-        },
-        stiffness_nm_per_rad {
-            id: 125 always,
-            symbol: "σ",
-            unit: "N·m/rad",
-            range: 1.0..=400.0,
-            default: 200.0,
-            meaning: "stiffness of the joint within an asperity, no less than 2(Tp − Tb)/(wλ) (derived)",
-        },
-        patch_deg {
-            id: 139 always,
-            symbol: "P",
-            unit: "deg",
-            range: 0.0..=60.0,
-            default: 0.0,
-            meaning: "angle from one patch of asperities to the next, two pitches or more; 0: they are everywhere (estimate)",
-        },
-        patch_share {
-            id: 140 always,
-            symbol: "q",
-            unit: "1",
-            range: 0.05..=1.0,
-            default: 0.4,
-            meaning: "share of that angle in which there are asperities (estimate)",
-        },
+        base_nm (119 always) "Tb" "N·m", 0.0..=2.0, 0.1,
+            "resistance between asperities (estimate, in the paper's range)";
+        peak_nm (120 always) "Tp" "N·m", 0.0..=4.0, 0.4,
+            "resistance at an asperity, no less than between them (estimate, in the paper's range)";
+        pitch_deg (121 always) "λ" "deg", 0.2..=20.0, 1.5, "angle from asperity to asperity (estimate)";
+        width_share (122 always) "w" "1", 0.1..=1.0, 0.6,
+            "share of the pitch over which the resistance rises (estimate)";
+        irregularity (123 always) "j" "1", 0.0..=0.9, 0.3,
+            "how much asperities differ in place and height (estimate)";
+        seed (124 always) "seed" "1", 0.0..=4_294_967_295.0, 1.0, "another whole number is another joint";
+        stiffness_nm_per_rad (125 always) "σ" "N·m/rad", 1.0..=400.0, 200.0,
+            "stiffness of the joint within an asperity, no less than 2(Tp − Tb)/(wλ) (derived)";
+        patch_deg (139 always) "P" "deg", 0.0..=60.0, 0.0,
+            "angle from one patch of asperities to the next, two pitches or more; 0: they are everywhere (estimate)";
+        patch_share (140 always) "q" "1", 0.05..=1.0, 0.4,
+            "share of that angle in which there are asperities (estimate)";
     }
 }
 

@@ -8,7 +8,6 @@
 use super::board_error::BoardError;
 use super::half_bridges::Quiet;
 use super::pin_map::{COIL_IN1, COIL_IN2};
-use crate::mcu::Mcu;
 use crate::pins::{Mode, Pin, Pull};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;

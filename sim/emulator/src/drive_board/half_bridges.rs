@@ -18,7 +18,6 @@
 
 use super::board_error::BoardError;
 use super::pin_map::{HALF_A, HALF_B};
-use crate::mcu::Mcu;
 use crate::pins::{Mode, Pin, Pull};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;

@@ -11,7 +11,7 @@ use super::pin_map::{
     BREAK, COIL, COIL_FAULT, COIL_IN1, COIL_IN2, COMMS_LINE, HALF_A, HALF_B, JOINT, LINE,
     LINE_BACK, MONITOR, MOTOR, SENSOR, SUPPLY,
 };
-use crate::mcu::{Mcu, Sampling};
+use crate::mcu::Sampling;
 use crate::pins::{Mode, Pin, Pull};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;

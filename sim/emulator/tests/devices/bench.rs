@@ -1,6 +1,6 @@
 //! A chip whose core stands.
 
-use crepitus_emulator::{Image, Mcu, Stm32f405, Time};
+use crepitus_emulator::{Image, Stm32f405, Time};
 
 /// A program that only loops.
 const LOOP: [u8; 12] = [0, 0, 1, 0x20, 9, 0, 0, 8, 0xfe, 0xe7, 0xfe, 0xe7];

@@ -1,7 +1,7 @@
 //! Flash and its controller (RM0090 3.6, 3.9).
 
 use crate::bench::Bench;
-use crepitus_emulator::{Mcu, Reset};
+use crepitus_emulator::Reset;
 
 const FLASH: u32 = 0x4002_3c00;
 const KEYR: u32 = FLASH + 0x04;

@@ -1,7 +1,7 @@
 //! The link's USART: a character counts where its pin is connected at the end of it.
 
 use crate::bench::Bench;
-use crepitus_emulator::{Character, Mcu, Time};
+use crepitus_emulator::{Character, Time};
 
 const RCC_AHB1ENR: u32 = 0x4002_3830;
 const RCC_APB2ENR: u32 = 0x4002_3844;

@@ -2,7 +2,6 @@
 //! not there, and two runs are the same.
 
 use crate::host::{Host, examination, image};
-use crepitus_emulator::Mcu;
 
 /// Registers that say how the image has set up the chip.
 fn set_up(host: &Host) -> impl Fn(u32) -> u32 {

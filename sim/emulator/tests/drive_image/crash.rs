@@ -2,7 +2,7 @@
 
 use crate::host::{Host, examination, image};
 use crate::tasks::RENDER;
-use crepitus_emulator::{Mcu, Reset};
+use crepitus_emulator::Reset;
 use crepitus_protocol::crash::{Controller, End, Head, TICKS, Tick, ticks};
 use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Sample, SampleFlags};

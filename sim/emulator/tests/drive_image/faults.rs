@@ -4,7 +4,7 @@
 use crate::host::{Host, examination, image};
 use crepitus_emulator::drive_board::CommsSide;
 use crepitus_emulator::mcu::{Step, Watch};
-use crepitus_emulator::{Mcu, Reset, Time};
+use crepitus_emulator::{Reset, Time};
 use crepitus_protocol::fault::{FAULTS, Fault};
 use crepitus_protocol::host::{Answer, Operation};
 use crepitus_virtual_device::leg::{CurrentPath, CurrentSensor, EncoderWiring};

@@ -2,7 +2,6 @@
 
 use crate::host::{Flash, Host, examination, image, scene};
 use crate::reference_flash::ReferenceFlash;
-use crepitus_emulator::Mcu;
 use crepitus_emulator::flash_interface::{FlashRead, Kind};
 use crepitus_emulator::image::FLASH;
 use crepitus_emulator::mcu::{Step, Watch};

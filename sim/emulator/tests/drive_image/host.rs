@@ -5,7 +5,7 @@ use crepitus_device::usb_port::HostBytes;
 use crepitus_emulator::drive_board::NativeComms;
 use crepitus_emulator::firmware::{Program, image_for_test};
 use crepitus_emulator::mcu::Watch;
-use crepitus_emulator::{DriveBoard, Image, Mcu, Time};
+use crepitus_emulator::{DriveBoard, Image, Time};
 use crepitus_protocol::frame;
 use crepitus_protocol::host::{Answer, Operation, Refusal, Reply, Request};
 use crepitus_protocol::link::DriveRefusal;

@@ -10,7 +10,7 @@
 
 use crate::host::{Host, examination, image};
 use crepitus_emulator::mcu::{RamAccess, Step, Watch};
-use crepitus_emulator::{Image, Mcu, Time};
+use crepitus_emulator::{Image, Time};
 use crepitus_protocol::State;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;

@@ -18,6 +18,7 @@ mod outputs;
 mod profile;
 #[path = "../timing/reference_flash.rs"]
 mod reference_flash;
+mod register_tables;
 mod registers;
 mod replay;
 mod self_test;

@@ -5,7 +5,7 @@ use crate::code::{FOREVER, bytes, load, store};
 use crate::host::{Host, examination, image};
 use crepitus_device::usb_port::HostBytes;
 use crepitus_emulator::firmware::{Program, image_for_test};
-use crepitus_emulator::{Mcu, Reset, Stm32f405, Time};
+use crepitus_emulator::{Reset, Stm32f405, Time};
 use crepitus_protocol::fault::Fault;
 use crepitus_protocol::host::{Answer, Operation};
 use crepitus_protocol::management::{Action, ManagementRequest};

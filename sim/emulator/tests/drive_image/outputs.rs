@@ -3,9 +3,9 @@
 
 use crate::actuator::{MOE, TIM8_BDTR};
 use crate::host::{Host, examination, image};
+use crepitus_emulator::Reset;
 use crepitus_emulator::drive_board::Faults;
 use crepitus_emulator::mcu::Access;
-use crepitus_emulator::{Mcu, Reset};
 use crepitus_protocol::State;
 use crepitus_protocol::fault::Fault;
 use crepitus_protocol::host::{Answer, Operation};

@@ -1,9 +1,9 @@
 //! The configuration registers of the images are those of docs/generated/registers.md.
 
 use crate::host::image;
+use crate::register_tables::tables;
 use crepitus_emulator::firmware::{Program, image_for_test};
-use crepitus_emulator::registers::tables;
-use crepitus_emulator::{Image, Mcu, Stm32f405, Time};
+use crepitus_emulator::{Image, Stm32f405, Time};
 use crepitus_virtual_device::usb::host::CdcHost;
 use std::fmt::Write as _;
 use std::path::Path;

@@ -2,8 +2,8 @@
 
 use crate::book::on_record;
 use crate::host::{Flash, Host, examination, image, judged};
+use crepitus_emulator::Time;
 use crepitus_emulator::cycles::Cycles;
-use crepitus_emulator::{Mcu, Time};
 use crepitus_protocol::telemetry::SampleFlags;
 
 /// Exceptions of the tasks, and their priority.

@@ -2,7 +2,6 @@
 //! running image, one at a time.
 
 use crate::host::{Host, examination, image};
-use crepitus_emulator::Mcu;
 
 const GPIOA_MODER: u32 = 0x4002_0000;
 const GPIOB_PUPDR: u32 = 0x4002_040c;

@@ -3,8 +3,8 @@
 
 use crate::host::{Host, MS, arm, boards, run, ticks_until_off, under_torque};
 use crepitus_client::{Error, Event, Transport as _};
+use crepitus_emulator::Reset;
 use crepitus_emulator::drive_board::CommsSide as _;
-use crepitus_emulator::{Mcu, Reset};
 use crepitus_protocol::State;
 use crepitus_protocol::fault::{FAULTS, Fault};
 use std::time::Duration;

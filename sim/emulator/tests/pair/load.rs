@@ -1,7 +1,6 @@
 //! Load of the core of comms: modelled, 0 wait states.
 
 use crate::host::{boards, connected, run};
-use crepitus_emulator::Mcu as _;
 
 /// Cycles in a millisecond.
 const CYCLES: f64 = 168_000.0;

@@ -5,9 +5,9 @@ use crate::host::{Host, boards, client, connected, images, leg, run};
 use crepitus_device::parameter_log::{
     ParameterLog, RECORDS_PER_SECTOR, SECTOR_BYTES, SLOT_BYTES, Sectors as _,
 };
+use crepitus_emulator::Pair;
 use crepitus_emulator::image::FLASH;
 use crepitus_emulator::pair::{Boards, PARAMETERS};
-use crepitus_emulator::{Mcu, Pair};
 use crepitus_protocol::parameters::id::STATIC_TORQUE;
 use crepitus_protocol::{Revision, Values};
 use crepitus_virtual_device::nor_flash::NorFlash;

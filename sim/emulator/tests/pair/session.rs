@@ -2,7 +2,7 @@
 
 use crate::host::{MS, arm, boards, client, connected, images, leg, run, ticks_until_off};
 use crepitus_client::Event;
-use crepitus_emulator::{Mcu, Pair};
+use crepitus_emulator::Pair;
 use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::parameters::id::STATIC_TORQUE;
 use crepitus_protocol::{Revision, State};

@@ -2,7 +2,7 @@
 
 use crate::host::{MS, boards, client, connected, pair, run};
 use crepitus_emulator::pair::Boards;
-use crepitus_emulator::{Mcu, Pair, Pin};
+use crepitus_emulator::{Pair, Pin};
 use crepitus_protocol::usb::{PRODUCT_ID, VENDOR_ID};
 use crepitus_virtual_device::usb::control::{ControlPipe, ControlRequest, TransferError};
 use std::time::Duration;

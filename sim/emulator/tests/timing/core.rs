@@ -3,7 +3,7 @@
 
 use crate::assembler::{Assembler, RAM, UNITS, image};
 use crepitus_emulator::cycles::Cycles;
-use crepitus_emulator::{Image, Mcu, Stm32f405, Time};
+use crepitus_emulator::{Image, Stm32f405, Time};
 use std::collections::BTreeSet;
 
 /// TIM2 overflows every `period` clocks of the core; what then goes on for

@@ -1,7 +1,7 @@
 //! A program does not notice that it is interrupted, wherever that is.
 
 use crate::assembler::{Assembler, TIM2, image};
-use crepitus_emulator::{Mcu, Stm32f405, Time};
+use crepitus_emulator::{Stm32f405, Time};
 
 /// Register that counts the runs of a handler.
 const RUNS: u8 = 5;

@@ -3,7 +3,7 @@
 
 use crate::assembler::{Assembler, HANDLER, PROGRAM, RAM, UNITS, image, image_of};
 use crepitus_emulator::mcu::{Step, Watch};
-use crepitus_emulator::{Image, Mcu, Reset, Stm32f405, Time};
+use crepitus_emulator::{Image, Reset, Stm32f405, Time};
 use fastrand::Rng;
 
 const FLASH: u32 = 0x0800_0000;

@@ -4,7 +4,7 @@
 use crate::assembler::{Assembler, HANDLER, PROGRAM, image_of};
 use crate::core::latency_image;
 use crepitus_emulator::mcu::{Step, Watch};
-use crepitus_emulator::{Mcu, Stm32f405, Time};
+use crepitus_emulator::{Stm32f405, Time};
 
 /// Bits of `FLASH_ACR`.
 const PREFETCH: u32 = 1 << 8;

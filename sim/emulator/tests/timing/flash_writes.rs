@@ -1,7 +1,7 @@
 //! A core that programs flash stands while that lasts, and all else runs on.
 
 use crate::assembler::{Assembler, RAM, UNITS, image};
-use crepitus_emulator::{Mcu, Stm32f405, Time};
+use crepitus_emulator::{Stm32f405, Time};
 
 const FLASH: u32 = 0x4002_3c00;
 const PLACE: u32 = 0x0800_8000;

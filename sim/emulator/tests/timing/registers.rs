@@ -2,7 +2,7 @@
 
 use crate::assembler::{Assembler, image};
 use crepitus_emulator::mcu::{Step, Watch};
-use crepitus_emulator::{Mcu, Stm32f405, Time};
+use crepitus_emulator::{Stm32f405, Time};
 
 /// Registers: on APB1, APB2, AHB1, AHB2; and memory.
 const PLACES: [u32; 6] = [

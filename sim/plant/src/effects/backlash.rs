@@ -14,26 +14,19 @@
 //!
 //! β is 1.0°: average no-load backlash of the GP 32 A.
 
-use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight, sense_of};
-use crate::effect::{Effect, Need, Part, numbers};
+use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, sense_of};
+use crate::effect::{Effect, Need, Part, numbers, parameters};
 use crate::energy_balance::{Account, EnergyBalance};
 use crepitus_model::Sense;
-use crepitus_model::parameters::ParameterSpec;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: NAME,
     adds: "the gear's lost motion: at each reversal the rotor first crosses a gap",
     states: &["gap_rad", "gap rate"],
-    parameters: &[ParameterSpec {
-        key: "gap_deg",
-        symbol: "β",
-        unit: "°",
-        min: 1e-6,
-        max: 90.0,
-        default: 1.0,
-        meaning: "lost motion between rotor and joint, at the joint",
-    }],
+    parameters: parameters! {
+        gap_deg "β" "°", 1e-6..=90.0, 1.0, "lost motion between rotor and joint, at the joint";
+    },
     choices: &[],
     needs: &[Need {
         effect: "drivetrain",
@@ -160,6 +153,10 @@ impl Backlash {
 }
 
 impl Chain for Backlash {
+    fn left(&self) -> Option<&dyn Chain> {
+        Some(&*self.left)
+    }
+
     fn fold(&mut self, step: &Step, body: &Body) -> Push {
         let rotor = self.rotor(body);
         let push = self.left.fold(step, &rotor);
@@ -264,10 +261,6 @@ impl Chain for Backlash {
         }
     }
 
-    fn weight(&self) -> Option<Weight> {
-        self.left.weight()
-    }
-
     fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
         self.left.energy(&self.rotor(body), balance);
         balance.add(NAME, "impacts", Account::Lost, self.lost_j);
@@ -285,13 +278,5 @@ impl Chain for Backlash {
 
     fn impacts(&self) -> Option<Impacts> {
         Some(self.impacts)
-    }
-
-    fn coil_current_a(&self) -> Option<f64> {
-        self.left.coil_current_a()
-    }
-
-    fn warnings(&self, warnings: &mut Vec<String>) {
-        self.left.warnings(warnings);
     }
 }

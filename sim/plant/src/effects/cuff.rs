@@ -16,43 +16,18 @@
 //! pull the shank along its length.
 
 use crate::compliance::{Compliance, Kind};
-use crate::effect::{Effect, Part, numbers};
-use crepitus_model::parameters::ParameterSpec;
+use crate::effect::{Effect, Part, numbers, parameters};
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: NAME,
     adds: "the compliance between brace and leg: straps, padding and soft tissue",
     states: &["brace angle", "brace velocity"],
-    parameters: &[
-        ParameterSpec {
-            key: "stiffness_nm_per_rad",
-            symbol: "k",
-            unit: "N·m/rad",
-            min: 0.1,
-            max: 1e6,
-            default: 120.0,
-            meaning: "stiffness of the cuffs about the knee",
-        },
-        ParameterSpec {
-            key: "damping_nms_per_rad",
-            symbol: "b",
-            unit: "N·m·s/rad",
-            min: 0.0,
-            max: 1e3,
-            default: 1.0,
-            meaning: "damping of the cuffs about the knee",
-        },
-        ParameterSpec {
-            key: "brace_inertia_kg_m2",
-            symbol: "J_b",
-            unit: "kg·m²",
-            min: 1e-5,
-            max: 10.0,
-            default: 0.01,
-            meaning: "inertia of the brace about the knee",
-        },
-    ],
+    parameters: parameters! {
+        stiffness_nm_per_rad "k" "N·m/rad", 0.1..=1e6, 120.0, "stiffness of the cuffs about the knee";
+        damping_nms_per_rad "b" "N·m·s/rad", 0.0..=1e3, 1.0, "damping of the cuffs about the knee";
+        brace_inertia_kg_m2 "J_b" "kg·m²", 1e-5..=10.0, 0.01, "inertia of the brace about the knee";
+    },
     choices: &[],
     needs: &[],
     part: Part::Link(|given, context, left| {

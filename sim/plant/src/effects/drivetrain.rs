@@ -15,46 +15,21 @@
 //! the actuator's torque as the step begins; that of the rotor's own inertia
 //! is not counted in.
 
-use crate::chain::{Body, Chain, Flow, Impacts, Push, Settled, Step, Verdict, Weight, sense_of};
-use crate::effect::{Effect, Part, numbers};
+use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, sense_of};
+use crate::effect::{Effect, Part, numbers, parameters};
 use crate::energy_balance::{Account, EnergyBalance};
 use crepitus_model::Sense;
-use crepitus_model::parameters::ParameterSpec;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: NAME,
     adds: "the rotor's inertia behind the gear, dry friction of the gear and its loss under load",
     states: &["friction phase"],
-    parameters: &[
-        ParameterSpec {
-            key: "inertia_kg_m2",
-            symbol: "J_r",
-            unit: "kg·m²",
-            min: 1e-6,
-            max: 10.0,
-            default: 0.051,
-            meaning: "inertia of the rotor, referred to the joint: times the square of the gear ratio",
-        },
-        ParameterSpec {
-            key: "friction_nm",
-            symbol: "F",
-            unit: "N·m",
-            min: 0.0,
-            max: 100.0,
-            default: 0.5,
-            meaning: "dry friction of motor and gear, at the joint",
-        },
-        ParameterSpec {
-            key: "load_loss",
-            symbol: "μ",
-            unit: "1",
-            min: 0.0,
-            max: 1.0,
-            default: 0.3,
-            meaning: "share of the torque through the gear that is lost in it",
-        },
-    ],
+    parameters: parameters! {
+        inertia_kg_m2 "J_r" "kg·m²", 1e-6..=10.0, 0.051, "inertia of the rotor, referred to the joint: times the square of the gear ratio";
+        friction_nm "F" "N·m", 0.0..=100.0, 0.5, "dry friction of motor and gear, at the joint";
+        load_loss "μ" "1", 0.0..=1.0, 0.3, "share of the torque through the gear that is lost in it";
+    },
     choices: &[],
     needs: &[],
     part: Part::Link(|given, _, left| {
@@ -182,6 +157,10 @@ impl Drivetrain {
 }
 
 impl Chain for Drivetrain {
+    fn left(&self) -> Option<&dyn Chain> {
+        Some(&*self.left)
+    }
+
     fn fold(&mut self, step: &Step, body: &Body) -> Push {
         let mut push = self
             .left
@@ -192,10 +171,6 @@ impl Chain for Drivetrain {
             Mode::Sliding(sense) => push.torque_nm -= sense.of_signed(self.limit_nm(step)),
         }
         push
-    }
-
-    fn shaft_mean_rad_s(&self, step: &Step, body: &Body, flow: Flow) -> f64 {
-        self.left.shaft_mean_rad_s(step, body, flow)
     }
 
     fn check(&mut self, step: &Step, body: &Body, flow: Flow) -> Verdict {
@@ -234,14 +209,6 @@ impl Chain for Drivetrain {
         settled
     }
 
-    fn shaft(&self, body: &Body) -> Body {
-        self.left.shaft(body)
-    }
-
-    fn is_rigid(&self) -> bool {
-        self.left.is_rigid()
-    }
-
     fn inertia_kg_m2(&self) -> f64 {
         self.gear.inertia_kg_m2 + self.left.inertia_kg_m2()
     }
@@ -252,10 +219,6 @@ impl Chain for Drivetrain {
 
     fn jerk(&mut self, body: &Body, change_rad_s: f64) {
         self.left.jerk(body, change_rad_s);
-    }
-
-    fn weight(&self) -> Option<Weight> {
-        self.left.weight()
     }
 
     fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
@@ -273,17 +236,5 @@ impl Chain for Drivetrain {
     fn write(&self, body: &Body, row: &mut Vec<f64>) {
         self.left.write(body, row);
         row.push(self.shown_nm);
-    }
-
-    fn impacts(&self) -> Option<Impacts> {
-        self.left.impacts()
-    }
-
-    fn coil_current_a(&self) -> Option<f64> {
-        self.left.coil_current_a()
-    }
-
-    fn warnings(&self, warnings: &mut Vec<String>) {
-        self.left.warnings(warnings);
     }
 }

@@ -28,10 +28,10 @@
 mod grip;
 
 use crate::boundary::{Boundary, MotionStep, Stretch};
-use crate::chain::{Body, Chain, Flow, Push, Settled, Weight};
-use crate::effect::{Effect, Part, numbers};
+use crate::chain::{Body, Flow, Push, Settled, Weight};
+use crate::effect::{Effect, Part, numbers, parameters};
 use crate::energy_balance::{Account, EnergyBalance};
-use crepitus_model::parameters::{Choice, ParameterSpec};
+use crepitus_model::parameters::Choice;
 use grip::{Grip, Palm};
 
 /// The effect.
@@ -39,53 +39,13 @@ pub const EFFECT: Effect = Effect {
     name: NAME,
     adds: "the trainee's arm: the motion becomes what it intends, and the leg does what comes of it",
     states: &["leg angle", "leg velocity"],
-    parameters: &[
-        ParameterSpec {
-            key: "mass_kg",
-            symbol: "M",
-            unit: "kg",
-            min: 1e-3,
-            max: 100.0,
-            default: 0.554,
-            meaning: "mass of the arm at the hand",
-        },
-        ParameterSpec {
-            key: "damping_ns_per_m",
-            symbol: "B",
-            unit: "N·s/m",
-            min: 0.0,
-            max: 1e4,
-            default: 6.45,
-            meaning: "damping of the arm at the hand",
-        },
-        ParameterSpec {
-            key: "stiffness_n_per_m",
-            symbol: "K",
-            unit: "N/m",
-            min: 0.0,
-            max: 1e6,
-            default: 135.0,
-            meaning: "stiffness of the arm at the hand",
-        },
-        ParameterSpec {
-            key: "lever_m",
-            symbol: "r",
-            unit: "m",
-            min: 0.01,
-            max: 2.0,
-            default: 0.35,
-            meaning: "distance of the hand from the knee's axis",
-        },
-        ParameterSpec {
-            key: "palm_factor",
-            symbol: "q",
-            unit: "1",
-            min: 0.1,
-            max: 10.0,
-            default: 1.0,
-            meaning: "the numbers of the grip's palm times this",
-        },
-    ],
+    parameters: parameters! {
+        mass_kg "M" "kg", 1e-3..=100.0, 0.554, "mass of the arm at the hand";
+        damping_ns_per_m "B" "N·s/m", 0.0..=1e4, 6.45, "damping of the arm at the hand";
+        stiffness_n_per_m "K" "N/m", 0.0..=1e6, 135.0, "stiffness of the arm at the hand";
+        lever_m "r" "m", 0.01..=2.0, 0.35, "distance of the hand from the knee's axis";
+        palm_factor "q" "1", 0.1..=10.0, 1.0, "the numbers of the grip's palm times this";
+    },
     choices: &[Choice {
         key: "grip",
         names: &["arm", "light", "firm", "whole-arm"],
@@ -111,16 +71,14 @@ pub const EFFECT: Effect = Effect {
             given_j: 0.0,
             lost_j: 0.0,
         };
-        let lifts = chain.weight().map(|weight| Lifts {
-            weight,
+        let lift = Lift {
+            weight: chain.weight(),
             given_j: 0.0,
-        });
-        let palm = Palm::of(given.choices[0], lever, palm_factor);
-        match (palm, lifts) {
-            (None, None) => Box::new(Hand { arm, lift: () }),
-            (None, Some(lift)) => Box::new(Hand { arm, lift }),
-            (Some(palm), None) => Box::new(Grip::new(Hand { arm, lift: () }, palm)),
-            (Some(palm), Some(lift)) => Box::new(Grip::new(Hand { arm, lift }, palm)),
+        };
+        let hand = Hand { arm, lift };
+        match Palm::of(given.choices[0], lever, palm_factor) {
+            None => Box::new(hand),
+            Some(palm) => Box::new(Grip::new(hand, palm)),
         }
     }),
 };
@@ -140,50 +98,24 @@ struct Arm {
     lost_j: f64,
 }
 
-/// Compensation of the leg's weight by a hand.
-trait Lift: Send {
-    /// Torque that holds the leg at an angle, N·m.
-    fn torque_nm(&self, angle_rad: f64) -> f64;
-    /// Notes work done.
-    fn did(&mut self, joule: f64);
-    /// Accounting it.
-    fn energy(&self, balance: &mut EnergyBalance);
-}
-
-/// Compensation without a leg.
-impl Lift for () {
-    fn torque_nm(&self, _: f64) -> f64 {
-        0.0
-    }
-
-    fn did(&mut self, _: f64) {}
-
-    fn energy(&self, _: &mut EnergyBalance) {}
-}
-
-/// Lifts it.
-struct Lifts {
-    weight: Weight,
+/// Compensation of the leg's weight by a hand, if there is a leg.
+struct Lift {
+    weight: Option<Weight>,
     given_j: f64,
 }
 
-impl Lift for Lifts {
+impl Lift {
+    /// Torque that holds the leg at an angle, N·m.
     fn torque_nm(&self, angle_rad: f64) -> f64 {
-        -(self.weight)(angle_rad)
-    }
-
-    fn did(&mut self, joule: f64) {
-        self.given_j += joule;
-    }
-
-    fn energy(&self, balance: &mut EnergyBalance) {
-        balance.add(NAME, "lifting", Account::Given, self.given_j);
+        self.weight
+            .as_ref()
+            .map_or(0.0, |weight| -weight(angle_rad))
     }
 }
 
-struct Hand<L> {
+struct Hand {
     arm: Arm,
-    lift: L,
+    lift: Lift,
 }
 
 /// The arm in one stretch: mean of the intended angle, of the intended
@@ -194,7 +126,7 @@ struct Intent {
     lift_nm: f64,
 }
 
-impl<L: Lift> Hand<L> {
+impl Hand {
     fn intent(&self, stretch: &Stretch) -> Intent {
         let motion = &self.arm.motion;
         let (a, b) = (motion.angle_rad(stretch.from), motion.angle_rad(stretch.to));
@@ -207,9 +139,7 @@ impl<L: Lift> Hand<L> {
     }
 }
 
-impl<L: Lift> Boundary for Hand<L> {
-    fn jump(&mut self, _: f64, _: &mut Body, _: &mut dyn Chain) {}
-
+impl Boundary for Hand {
     fn begin(&mut self, motion: &MotionStep) {
         self.arm.motion = *motion;
         self.arm.intended = motion.to;
@@ -224,14 +154,7 @@ impl<L: Lift> Boundary for Hand<L> {
             + arm.damping * intent.omega_rad_s
             + intent.lift_nm;
         let slope = inertial + 0.5 * arm.stiffness * stretch.length_s + arm.damping;
-        let omega_rad_s = match push.held_by_nm {
-            Some(_) => 0.0,
-            None => (push.torque_nm + torque) / (push.slope_nms + slope),
-        };
-        Flow {
-            omega_rad_s,
-            torque_nm: slope * omega_rad_s - torque,
-        }
+        push.meets(torque, slope)
     }
 
     fn settle(
@@ -255,7 +178,7 @@ impl<L: Lift> Boundary for Hand<L> {
         arm.felt_nms +=
             (pull + intent.lift_nm) * h - arm.inertia_kg_m2 * (next.omega_rad_s - body.omega_rad_s);
         arm.struck_nms -= arm.inertia_kg_m2 * settled.struck_rad_s;
-        self.lift.did(intent.lift_nm * w * h);
+        self.lift.given_j += intent.lift_nm * w * h;
         *body = next;
     }
 
@@ -276,7 +199,9 @@ impl<L: Lift> Boundary for Hand<L> {
         let behind = arm.intended.angle_rad - body.angle_rad;
         let speed = body.omega_rad_s;
         balance.add(NAME, "work", Account::Given, arm.given_j);
-        self.lift.energy(balance);
+        if self.lift.weight.is_some() {
+            balance.add(NAME, "lifting", Account::Given, self.lift.given_j);
+        }
         balance.add(
             NAME,
             "arm",

@@ -40,45 +40,21 @@ mod passive;
 pub use passive::Passive;
 
 use crate::chain::{Body, Push, Step, Weight};
-use crate::effect::{Effect, Given, Part, numbers};
+use crate::effect::{Effect, Given, Part, numbers, parameters};
 use crate::energy_balance::{Account, EnergyBalance};
 use crate::load::{Load, Loaded};
-use crepitus_model::parameters::{Choice, ParameterSpec};
+use crepitus_model::parameters::Choice;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: NAME,
     adds: "leg and foot: inertia, weight for a posture, passive moment and damping of the knee",
     states: &["leg angle", "leg velocity"],
-    parameters: &[
-        ParameterSpec {
-            key: "body_mass_kg",
-            symbol: "m",
-            unit: "kg",
-            min: 1.0,
-            max: 500.0,
-            default: 70.0,
-            meaning: "mass of the whole body, from which that of leg and foot follows",
-        },
-        ParameterSpec {
-            key: "height_m",
-            symbol: "H",
-            unit: "m",
-            min: 0.3,
-            max: 3.0,
-            default: 1.75,
-            meaning: "height of the body, from which the length of the shank follows",
-        },
-        ParameterSpec {
-            key: "damping_nms_per_rad",
-            symbol: "B",
-            unit: "N·m·s/rad",
-            min: 0.0,
-            max: 100.0,
-            default: 0.2,
-            meaning: "damping of the knee about any angle",
-        },
-    ],
+    parameters: parameters! {
+        body_mass_kg "m" "kg", 1.0..=500.0, 70.0, "mass of the whole body, from which that of leg and foot follows";
+        height_m "H" "m", 0.3..=3.0, 1.75, "height of the body, from which the length of the shank follows";
+        damping_nms_per_rad "B" "N·m·s/rad", 0.0..=100.0, 0.2, "damping of the knee about any angle";
+    },
     choices: &[
         Choice {
             key: "posture",

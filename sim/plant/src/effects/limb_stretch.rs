@@ -18,10 +18,9 @@
 //! by up to 0.5 N·m.
 
 use crate::chain::{Body, Push, Step, Weight};
-use crate::effect::{Effect, Need, Part, numbers};
+use crate::effect::{Effect, Need, Part, numbers, parameters};
 use crate::energy_balance::{Account, EnergyBalance};
 use crate::load::{Load, Loaded};
-use crepitus_model::parameters::ParameterSpec;
 
 const NAME: &str = "limb-stretch";
 
@@ -30,35 +29,11 @@ pub const EFFECT: Effect = Effect {
     name: NAME,
     adds: "an oval cam that shifts the shank along its length; the brace has no actuator for it, a simulator only",
     states: &[],
-    parameters: &[
-        ParameterSpec {
-            key: "pull_n",
-            symbol: "F",
-            unit: "N",
-            min: -200.0,
-            max: 200.0,
-            default: 20.0,
-            meaning: "pull along the shank, away from the knee (estimate)",
-        },
-        ParameterSpec {
-            key: "straight_radius_m",
-            symbol: "a",
-            unit: "m",
-            min: 5e-3,
-            max: 0.2,
-            default: 0.06,
-            meaning: "semi-axis of the cam along the shank at 0 deg (estimate)",
-        },
-        ParameterSpec {
-            key: "bent_radius_m",
-            symbol: "b",
-            unit: "m",
-            min: 5e-3,
-            max: 0.2,
-            default: 0.048,
-            meaning: "semi-axis of the cam along the shank at 90 deg (estimate)",
-        },
-    ],
+    parameters: parameters! {
+        pull_n "F" "N", -200.0..=200.0, 20.0, "pull along the shank, away from the knee (estimate)";
+        straight_radius_m "a" "m", 5e-3..=0.2, 0.06, "semi-axis of the cam along the shank at 0 deg (estimate)";
+        bent_radius_m "b" "m", 5e-3..=0.2, 0.048, "semi-axis of the cam along the shank at 90 deg (estimate)";
+    },
     choices: &[],
     needs: &[Need {
         effect: "limb",

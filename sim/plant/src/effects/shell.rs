@@ -20,55 +20,23 @@
 use crate::branch::{Branched, Loose};
 use crate::chain::{Body, Chain, Push, Step, Weight};
 use crate::compliance::{Compliance, Kind};
-use crate::effect::{Context, Effect, Given, Need, OnChain, Part, numbers};
+use crate::effect::{Context, Effect, Given, Need, OnChain, Part, numbers, parameters};
 use crate::effects::limb::STANDARD_GRAVITY;
 use crate::energy_balance::{Account, EnergyBalance};
 use crate::load::{Load, Loaded};
-use crepitus_model::parameters::{Choice, ParameterSpec};
+use crepitus_model::parameters::Choice;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
     name: NAME,
     adds: "the clamshell near the ankle that carries the actuator, on its compliant seat",
     states: &["shell angle", "shell velocity"],
-    parameters: &[
-        ParameterSpec {
-            key: "mass_kg",
-            symbol: "M",
-            unit: "kg",
-            min: 0.01,
-            max: 10.0,
-            default: 0.25,
-            meaning: "mass of the shell, without what moves in it",
-        },
-        ParameterSpec {
-            key: "seat_stiffness_n_per_m",
-            symbol: "k",
-            unit: "N/m",
-            min: 10.0,
-            max: 1e6,
-            default: 4_000.0,
-            meaning: "stiffness of its seat on the leg",
-        },
-        ParameterSpec {
-            key: "seat_damping_ns_per_m",
-            symbol: "b",
-            unit: "N·s/m",
-            min: 0.0,
-            max: 1e3,
-            default: 20.0,
-            meaning: "damping of its seat on the leg",
-        },
-        ParameterSpec {
-            key: "lever_m",
-            symbol: "r",
-            unit: "m",
-            min: 0.1,
-            max: 0.5,
-            default: 0.3,
-            meaning: "distance of the shell from the knee's axis",
-        },
-    ],
+    parameters: parameters! {
+        mass_kg "M" "kg", 0.01..=10.0, 0.25, "mass of the shell, without what moves in it";
+        seat_stiffness_n_per_m "k" "N/m", 10.0..=1e6, 4_000.0, "stiffness of its seat on the leg";
+        seat_damping_ns_per_m "b" "N·s/m", 0.0..=1e3, 20.0, "damping of its seat on the leg";
+        lever_m "r" "m", 0.1..=0.5, 0.3, "distance of the shell from the knee's axis";
+    },
     choices: &[Choice {
         key: "hand_on",
         names: &["shell", "leg"],

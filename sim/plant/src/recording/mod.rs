@@ -6,7 +6,7 @@
 //! ```
 //! [`read`] takes two columns of a table, CSV or OpenSim's, which is recognised by its content, and
 //! validates them: an impossible motion is an error that names the file, line and column; an unusual
-//! one is a [`Warning`]. Every angle that is read passes one plausibility check. [`smooth`] is a zero-phase
+//! one is a warning. Every angle that is read passes one plausibility check. [`smooth`] is a zero-phase
 //! low-pass and an interpolation in one. Both are needed: a recording carries noise that
 //! differentiating amplifies, and a jump of Ω̇ is a jump of torque under the `physical` convention.
 //! [`smooth_cycle`] makes a motion without end of one recorded cycle.
@@ -19,7 +19,6 @@ mod rows;
 mod smooth;
 mod smoothing_spline;
 mod unit;
-mod warning;
 
 #[cfg(test)]
 mod test_cells;
@@ -39,7 +38,6 @@ pub use plausible::{JOINT_DEG, JOINT_DEG_S};
 pub use repeat::{MAX_JOIN_DEG, smooth_cycle};
 pub use smooth::{CubicSegment, acceleration_ripple_rad_s2, smooth};
 pub use unit::{AngleUnit, TimeUnit};
-pub use warning::Warning;
 
 use crepitus_files::input::{self, InputError};
 use std::fs::File;
@@ -136,7 +134,7 @@ pub struct Samples {
     /// The time of the first row as the file counts it, in s.
     pub first_s: f64,
     /// Warnings about the recording.
-    pub warnings: Vec<Warning>,
+    pub warnings: Vec<String>,
     /// The unit that the angles have in the file.
     pub unit: Option<AngleUnit>,
     /// The unit that the header of an OpenSim file names.

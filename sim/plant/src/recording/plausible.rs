@@ -1,7 +1,7 @@
 //! Plausibility of angles: range, speed, marks of missing samples, wraps, dropouts, and titles of
 //! tables that have no angles.
 
-use super::{AngleUnit, Angles, Place, Source, Warning};
+use super::{AngleUnit, Angles, Place, Source};
 use crate::Extremes;
 
 /// Angles of a joint that are believed without a word, in deg.
@@ -60,7 +60,7 @@ impl Readings<'_> {
     }
 
     /// Warnings about what no joint does.
-    pub(super) fn warnings(&self) -> Vec<Warning> {
+    pub(super) fn warnings(&self) -> Vec<String> {
         let marks = self.marks();
         let dropouts = self.dropouts();
         let is_odd = |index: usize| {
@@ -69,17 +69,21 @@ impl Readings<'_> {
         };
         let mut warnings = Vec::new();
         if let Some(&first) = marks.first() {
-            warnings.push(Warning::Mark {
-                place: self.place(first),
-                number: self.number.get(first).copied().unwrap_or_default(),
-                count: marks.len(),
-            });
+            warnings.push(format!(
+                "{}: {} looks like a mark of a missing sample ({} in all), and is taken for an angle; leave such \
+                 cells empty and write max_gap_s",
+                self.place(first),
+                self.number.get(first).copied().unwrap_or_default(),
+                marks.len()
+            ));
         }
         if let Some(&first) = dropouts.first() {
-            warnings.push(Warning::Dropout {
-                place: self.place(first),
-                count: dropouts.len(),
-            });
+            warnings.push(format!(
+                "{}: the angle drops to exactly 0 between samples far from it ({} in all); if samples were lost \
+                 there, leave the cells empty and write max_gap_s",
+                self.place(first),
+                dropouts.len()
+            ));
         }
         warnings.extend(self.range());
         warnings.extend(self.steps(&is_odd));
@@ -133,7 +137,8 @@ impl Readings<'_> {
         self.angles.factor * self.unit.to_deg(number) + self.angles.offset_deg
     }
 
-    fn range(&self) -> Option<Warning> {
+    /// The farthest of the angles that are unusual.
+    fn range(&self) -> Option<String> {
         let beyond = |deg: f64| (deg - JOINT_DEG.end()).max(JOINT_DEG.start() - deg);
         let (mut count, mut farthest) = (0, None);
         let mut extremes = Extremes::default();
@@ -159,15 +164,17 @@ impl Readings<'_> {
         } else {
             "; check the column, the unit and offset_deg"
         };
-        Some(Warning::Range {
-            place: self.place(index),
-            deg,
-            count,
-            advice,
-        })
+        Some(format!(
+            "{}: the joint would be at {deg:.1} deg, where {} to {} deg is usual ({count} samples beyond, this is the \
+             farthest){advice}",
+            self.place(index),
+            JOINT_DEG.start(),
+            JOINT_DEG.end()
+        ))
     }
 
-    fn steps(&self, is_odd: &impl Fn(usize) -> bool) -> Vec<Warning> {
+    /// The first step by a whole turn, and the fastest of the others.
+    fn steps(&self, is_odd: &impl Fn(usize) -> bool) -> Vec<String> {
         let (mut wrap, mut wraps) = (None, 0);
         let (mut fastest, mut fast) = (None, 0);
         let times = self.time_s.array_windows();
@@ -191,15 +198,18 @@ impl Readings<'_> {
                 }
             }
         }
-        let wrap = wrap.map(|(index, step_deg)| Warning::Wrap {
-            place: self.place(index),
-            step_deg,
-            count: wraps,
+        let wrap = wrap.map(|(index, step_deg)| {
+            format!(
+                "{}: the angle steps by {step_deg:.1} deg ({wraps} such in all): it wraps; unwrap the column",
+                self.place(index)
+            )
         });
-        let fastest = fastest.map(|(index, deg_s)| Warning::Speed {
-            place: self.place(index),
-            deg_s,
-            count: fast,
+        let fastest = fastest.map(|(index, deg_s)| {
+            format!(
+                "{}: the angle changes by {deg_s:.0} deg/s, where up to {JOINT_DEG_S} is usual ({fast} such steps, \
+                 this is the fastest); check the sample",
+                self.place(index)
+            )
         });
         wrap.into_iter().chain(fastest).collect()
     }
@@ -213,62 +223,24 @@ pub(super) fn is_mark(number: f64) -> bool {
 
 /// Returns whether a table of this title has no angles.
 pub(super) fn is_no_angle(title: &str) -> bool {
-    const WHOLE: [&str; 14] = [
-        "speed",
-        "velocity",
-        "control",
-        "error",
-        "positionerrors",
-        "perr",
-        "markererror",
-        "force",
-        "moment",
-        "actuationforce",
-        "actuationspeed",
-        "actuationpower",
-        "stresstermweight",
-        "inversedynamicsgeneralizedforces",
-    ];
-    const ENDINGS: [&str; 14] = [
-        "speeds",
-        "velocities",
-        "accelerations",
-        "controls",
-        "errors",
-        "excitations",
-        "activations",
-        "forces",
-        "moments",
-        "powers",
-        "perr",
-        "actuationforce",
-        "dudt",
-        "markererrors",
-    ];
+    const WHOLE: &str = "speed velocity control error positionerrors perr markererror force moment \
+                         actuationforce actuationspeed actuationpower stresstermweight \
+                         inversedynamicsgeneralizedforces";
+    const ENDINGS: &str = "speeds velocities accelerations controls errors excitations activations forces \
+                           moments powers perr actuationforce dudt markererrors";
     let bare: String = title
         .chars()
         .filter(|c| c.is_alphabetic())
         .flat_map(char::to_lowercase)
         .collect();
-    WHOLE.contains(&bare.as_str()) || ENDINGS.iter().any(|ending| bare.ends_with(ending))
+    WHOLE.split(' ').any(|whole| whole == bare)
+        || ENDINGS.split(' ').any(|ending| bare.ends_with(ending))
 }
 
 /// Returns whether a column of this name has no angles.
 pub(super) fn is_no_angle_name(name: &str) -> bool {
-    const ENDINGS: [&str; 12] = [
-        "/speed",
-        "_speed",
-        "_velocity",
-        "_vel",
-        "_moment",
-        "_force",
-        "_torque",
-        "_power",
-        "_acc",
-        "_acceleration",
-        "_u",
-        "_error",
-    ];
+    const ENDINGS: &str = "/speed _speed _velocity _vel _moment _force _torque _power _acc _acceleration _u \
+                           _error";
     let name = name.to_lowercase();
-    ENDINGS.iter().any(|ending| name.ends_with(ending))
+    ENDINGS.split(' ').any(|ending| name.ends_with(ending))
 }

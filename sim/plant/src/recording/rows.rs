@@ -4,7 +4,7 @@ use super::plausible::{Readings, RowLines, is_mark, is_no_angle, is_no_angle_nam
 use super::unit::{self, Spread, clock_s};
 use super::{
     AngleUnit, Angles, MAX_ROWS, MIN_SAMPLES, Place, Quantity, RecordingError, Samples, Source,
-    TimeUnit, Warning,
+    TimeUnit,
 };
 use crepitus_files::table::{CellError, Names, Table, TableError, shortened};
 use std::io::Read;
@@ -103,17 +103,18 @@ impl Rows<'_> {
             if let Some((line, declared)) = header.columns
                 && declared != found
             {
-                self.samples.warnings.push(Warning::DeclaredColumns {
-                    place: Place::line(path, line),
-                    declared,
-                    found,
-                });
+                let place = Place::line(path, line);
+                self.samples.warnings.push(format!(
+                    "{place}: the header declares {declared} columns, the line of names has {found}"
+                ));
             }
         }
         let name = table.names().get(angle_index).map_or("", String::as_str);
         if is_angle && is_no_angle_name(name) {
             let place = Place::cell(path, table.names_line(), self.source.angle_column);
-            self.samples.warnings.push(Warning::NoAngleName { place });
+            self.samples.warnings.push(format!(
+                "{place}: the name is not that of an angle; check the column"
+            ));
         }
         Ok(())
     }
@@ -256,19 +257,19 @@ impl Rows<'_> {
         let doubled = self.doubled.map_or(0, |(_, count)| count);
         if let Some((line, count)) = self.doubled {
             let place = Place::line(path, line);
-            self.samples
-                .warnings
-                .push(Warning::DoubledRows { place, count });
+            let rows = if count == 1 { "row" } else { "rows" };
+            self.samples.warnings.push(format!(
+                "{place}: the row repeats the one before it, time and value; left out ({count} such {rows})"
+            ));
         }
         let rows = (found + doubled + self.left_out) as u64;
         if let Some((line, declared)) = table.header().and_then(|header| header.rows)
             && declared != rows
         {
-            self.samples.warnings.push(Warning::DeclaredRows {
-                place: Place::line(path, line),
-                declared,
-                found: rows,
-            });
+            let place = Place::line(path, line);
+            self.samples.warnings.push(format!(
+                "{place}: the header declares {declared} rows, the file has {rows}; it may have been cut"
+            ));
         }
         let gap = self.gap();
         self.samples.warnings.extend(gap);
@@ -340,7 +341,8 @@ impl Rows<'_> {
         Ok(())
     }
 
-    fn gap(&self) -> Option<Warning> {
+    /// The longest of the gaps, in the times of the file.
+    fn gap(&self) -> Option<String> {
         let median_interval_s = self.samples.median_interval_s()?;
         let gaps = self
             .samples
@@ -349,14 +351,29 @@ impl Rows<'_> {
             .filter(|[before, after]| after - before > GAP_FACTOR * median_interval_s);
         let count = gaps.clone().count();
         let [from_s, to_s] = gaps.max_by(|[a, b], [c, d]| (b - a).total_cmp(&(d - c)))?;
-        Some(Warning::Gap {
-            place: Place::column_of(self.source, self.source.time_column),
-            from_s: from_s + self.first_time_s,
-            to_s: to_s + self.first_time_s,
-            median_interval_s,
-            count,
-        })
+        let gaps = if count == 1 {
+            "gap"
+        } else {
+            "gaps, this is the longest"
+        };
+        Some(format!(
+            "{}: no samples between {:.3} s and {:.3} s, where {} s is usual ({count} such {gaps}); the motion there \
+             is a guess",
+            Place::column_of(self.source, self.source.time_column),
+            from_s + self.first_time_s,
+            to_s + self.first_time_s,
+            significant(median_interval_s)
+        ))
     }
+}
+
+/// A time with three digits after the point, or three that are not zero.
+fn significant(value: f64) -> String {
+    let mut digits = 3;
+    while digits < 12 && value.abs() * 10_f64.powi(digits) < 99.5 {
+        digits += 1;
+    }
+    format!("{value:.*}", usize::try_from(digits).unwrap_or(3))
 }
 
 /// The position that `#4` names, from 1.

@@ -2,7 +2,7 @@
 
 use super::test_smooth::jumps;
 use super::{
-    AngleUnit, Angles, Quantity, Samples, Source, Warning, acceleration_ripple_rad_s2, read, smooth,
+    AngleUnit, Angles, Quantity, Samples, Source, acceleration_ripple_rad_s2, read, smooth,
 };
 use std::path::{Path, PathBuf};
 
@@ -44,7 +44,7 @@ fn recordings_are_read_and_smoothed() {
     for (name, count, peak_deg_s, tolerance) in RECORDINGS {
         let samples = read_csv(&folder, name);
         assert_eq!(samples.time_s.len(), count, "{name}");
-        assert_eq!(samples.warnings, [], "{name}");
+        assert_eq!(samples.warnings, Vec::<String>::new(), "{name}");
         let segments = smooth(&samples, CUTOFF_HZ).unwrap();
         assert_eq!(segments.len(), count - 1);
 
@@ -101,14 +101,10 @@ fn opensim_files_agree_with_their_csv() {
         if raw == "opensim_crouch_gait" {
             assert!(matches!(
                 samples.warnings.as_slice(),
-                [Warning::DeclaredRows {
-                    declared: 120,
-                    found: 119,
-                    ..
-                }]
+                [only] if only.contains("declares 120 rows, the file has 119")
             ));
         } else {
-            assert_eq!(samples.warnings, [], "{raw}");
+            assert_eq!(samples.warnings, Vec::<String>::new(), "{raw}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Plausibility of angles: units, range, speed, marks, wraps, dropouts and titles.
 
 use super::test_read::{MOT, assert_refused, read_csv, read_mot, read_unit};
-use super::{AngleUnit, Angles, Quantity, Samples, Source, Warning, read_from};
+use super::{AngleUnit, Angles, Quantity, Samples, Source, read_from};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -33,8 +33,7 @@ fn opensim(title: &str, in_degrees: &str, rows: &[f64]) -> String {
 }
 
 fn warnings(result: Result<Samples, String>) -> Vec<String> {
-    let samples = result.unwrap();
-    samples.warnings.iter().map(Warning::to_string).collect()
+    result.unwrap().warnings
 }
 
 #[track_caller]

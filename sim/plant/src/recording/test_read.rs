@@ -2,8 +2,8 @@
 //! temporary file.
 
 use super::{
-    AngleUnit, Angles, MAX_BYTES, Quantity, RecordingError, Samples, Source, TimeUnit, Warning,
-    read, read_from,
+    AngleUnit, Angles, MAX_BYTES, Quantity, RecordingError, Samples, Source, TimeUnit, read,
+    read_from,
 };
 use std::fs;
 
@@ -43,12 +43,7 @@ pub(super) fn assert_refused(result: Result<Samples, String>, expected: &str) {
 
 #[track_caller]
 pub(super) fn assert_warned(result: Result<Samples, String>, expected: &str) {
-    let warnings: Vec<String> = result
-        .unwrap()
-        .warnings
-        .iter()
-        .map(Warning::to_string)
-        .collect();
+    let warnings = result.unwrap().warnings;
     assert!(
         matches!(warnings.as_slice(), [only] if only.contains(expected)),
         "\n   found: {warnings:?}\nexpected: {expected}"
@@ -80,7 +75,7 @@ fn assert_good(result: Result<Samples, String>) {
         [0.0, third, 2.0 * third, -0.5 * third]
     ));
     assert_eq!(samples.time_s[0], 0.0);
-    assert_eq!(samples.warnings, []);
+    assert_eq!(samples.warnings, Vec::<String>::new());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Units of angles and of times, and which one counts where a file and a person differ.
 
-use super::{Angles, Place, RecordingError, Source, Warning};
+use super::{Angles, Place, RecordingError, Source};
 use crate::Extremes;
 use crepitus_files::table::Table;
 use std::fmt;
@@ -114,16 +114,15 @@ impl TimeUnit {
         source: &Source<'_>,
         table: &Table<R>,
         column: usize,
-        (warnings, read_as): (&mut Vec<Warning>, &mut Vec<String>),
+        (warnings, read_as): (&mut Vec<String>, &mut Vec<String>),
     ) -> Self {
         let of_file = table.unit(column).and_then(|word| Self::of_word(&word));
         match (source.time_unit, of_file) {
             (Some(said), Some(of_file)) if said != of_file => {
-                warnings.push(Warning::UnitAgainstFile {
-                    place: Place::column_of(source, source.time_column),
-                    file: format!("the row of units says {of_file}"),
-                    taken: said.to_string(),
-                });
+                let place = Place::column_of(source, source.time_column);
+                warnings.push(format!(
+                    "{place}: the row of units says {of_file}; taken as {said}"
+                ));
                 said
             }
             (Some(said), _) => said,
@@ -215,7 +214,7 @@ pub(super) fn settle<R: Read>(
     table: &Table<R>,
     column: usize,
     spread: &Spread,
-    (warnings, read_as): (&mut Vec<Warning>, &mut Vec<String>),
+    (warnings, read_as): (&mut Vec<String>, &mut Vec<String>),
 ) -> Result<AngleUnit, RecordingError> {
     let header = table.header().and_then(|header| header.in_degrees.clone());
     let row = table.unit(column);
@@ -256,26 +255,28 @@ pub(super) fn settle<R: Read>(
             } else {
                 said
             };
-            warnings.push(Warning::UnitAgainstFile {
-                place: at,
-                file: format!("{file} says {of_file}, but {said} was named"),
-                taken: format!("{taken}; the largest number is {:.4}", spread.largest),
-            });
+            warnings.push(format!(
+                "{at}: {file} says {of_file}, but {said} was named; taken as {taken}; the largest number is {:.4}",
+                spread.largest
+            ));
             return Ok(taken);
         }
         (Some(said), _) => {
             if AngleUnit::of_name(source.angle_column).is_some_and(|named| named != said) {
-                warnings.push(Warning::UnitInName { place, unit: said });
+                warnings.push(format!(
+                    "{place}: the name does not look like the chosen unit, \"{said}\""
+                ));
                 return Ok(said);
             }
             said
         }
     };
     if unit == AngleUnit::Deg && spread.may_be_radians() {
-        warnings.push(Warning::SmallAngles {
-            place: Place::column_of(source, source.angle_column),
-            largest_deg: spread.largest,
-        });
+        let place = Place::column_of(source, source.angle_column);
+        warnings.push(format!(
+            "{place}: no angle is beyond ±{:.3} deg; if the file is in radians, write unit = \"rad\"",
+            spread.largest
+        ));
     }
     Ok(unit)
 }

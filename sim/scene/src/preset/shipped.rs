@@ -16,7 +16,7 @@ pub struct PresetFile {
 }
 
 macro_rules! files {
-    ($($name:literal),* $(,)?) => {
+    ($($name:literal)*) => {
         /// All of them by disorder. A preset can build on those above it.
         pub const FILES: &[PresetFile] = &[$(PresetFile {
             name: $name,
@@ -25,50 +25,16 @@ macro_rules! files {
     };
 }
 
-files![
-    "end-feel-soft",
-    "end-feel-firm",
-    "end-feel-hard",
-    "end-feel-springy",
-    "end-feel-empty",
-    "contracture-mild",
-    "contracture-moderate",
-    "contracture-severe",
-    "capsular",
-    "stiff-knee",
-    "meniscal-block",
-    "bone-block",
-    "updrs-1-lead-pipe",
-    "updrs-2-lead-pipe",
-    "updrs-3-lead-pipe",
-    "updrs-4-lead-pipe",
-    "updrs-1-cogwheel",
-    "updrs-2-cogwheel",
-    "updrs-3-cogwheel",
-    "updrs-4-cogwheel",
-    "mas-1-catch",
-    "mas-1plus-catch",
-    "mas-2-catch",
-    "mas-3-catch",
-    "mas-1-reflex",
-    "mas-1plus-reflex",
-    "mas-2-reflex",
-    "mas-3-reflex",
-    "mas-4-lead-pipe",
-    "clasp-knife-mild",
-    "clasp-knife-marked",
-    "clasp-knife-severe",
-    "scats-1-clonus",
-    "scats-2-clonus",
-    "scats-3-clonus",
-    "texture-fine",
-    "texture-coarse",
-    "texture-bone-on-bone",
-    "texture-creaking",
-    "coarse",
-    "fine",
-    "bone-on-bone",
-];
+files! {
+    "end-feel-soft" "end-feel-firm" "end-feel-hard" "end-feel-springy" "end-feel-empty"
+    "contracture-mild" "contracture-moderate" "contracture-severe" "capsular" "stiff-knee"
+    "meniscal-block" "bone-block" "updrs-1-lead-pipe" "updrs-2-lead-pipe" "updrs-3-lead-pipe"
+    "updrs-4-lead-pipe" "updrs-1-cogwheel" "updrs-2-cogwheel" "updrs-3-cogwheel" "updrs-4-cogwheel"
+    "mas-1-catch" "mas-1plus-catch" "mas-2-catch" "mas-3-catch" "mas-1-reflex" "mas-1plus-reflex"
+    "mas-2-reflex" "mas-3-reflex" "mas-4-lead-pipe" "clasp-knife-mild" "clasp-knife-marked"
+    "clasp-knife-severe" "scats-1-clonus" "scats-2-clonus" "scats-3-clonus" "texture-fine"
+    "texture-coarse" "texture-bone-on-bone" "texture-creaking" "coarse" "fine" "bone-on-bone"
+}
 
 impl PresetFile {
     /// Path of the file in the repository.

@@ -5,8 +5,9 @@ mod warnings;
 
 use super::{AddedTime, Totals};
 use crate::scene::{DataFile, SCENE_VERSION, Scene, SolverChoice};
+use crepitus_plant::energy_balance::Account;
 use parts::{cycles, effects, hand_torque, impacts, plant_energy, tank_summary, torque_limit};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use warnings::run_warnings;
 
 /// Version of the form of `summary.json`.
@@ -250,7 +251,7 @@ pub struct LeadSummary {
 
 /// The energy balance of a plant, J:
 /// sum of what was given = sum of what is stored, lost and rendered + residual.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct PlantEnergySummary {
     /// Terms of the balance, from the hand to the motor.
     pub terms: Vec<EnergyTerm>,
@@ -270,14 +271,20 @@ pub struct EnergyTerm {
     pub effect: &'static str,
     /// Description of the term.
     pub what: &'static str,
-    /// `given`, `stored`, `lost` or `rendered`.
-    pub account: &'static str,
+    /// Account in which it counts.
+    #[serde(serialize_with = "by_name")]
+    pub account: Account,
     /// J.
     pub joule: f64,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+fn by_name<S: Serializer>(account: &Account, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(account.name())
+}
+
 /// The work of the rendered torque, J.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct RenderingSummary {
     /// Work of the model's torque, as its own balance has it.
     pub model_j: f64,

@@ -68,7 +68,7 @@ pub(super) fn recording(
     if let (None, Some(taken)) = (unit, samples.unit) {
         section.note("unit", Value::Text(taken.to_string()));
     }
-    warnings.extend(samples.warnings.iter().map(ToString::to_string));
+    warnings.extend(samples.warnings.iter().cloned());
     // A duration written with fewer digits than the file's last time is meant.
     if !repeat && duration_s > samples.duration_s() * (1.0 + 1e-9) {
         return Err(section.key_error(

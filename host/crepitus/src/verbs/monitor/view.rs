@@ -49,7 +49,7 @@ impl Counts {
 }
 
 /// Content that is shown.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct View {
     device: String,
     bins: VecDeque<Bin>,
@@ -67,14 +67,7 @@ impl View {
     pub(super) fn new(device: String) -> Self {
         Self {
             device,
-            bins: VecDeque::new(),
-            bin_s: 0.0,
-            end_s: 0.0,
-            status: None,
-            holder: None,
-            counts: None,
-            marks: Vec::new(),
-            messages: VecDeque::new(),
+            ..Self::default()
         }
     }
 

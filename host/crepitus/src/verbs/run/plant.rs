@@ -2,7 +2,7 @@
 //! the rendered torque did.
 
 use crate::sections::{millijoule, nm, section};
-use crepitus_pages::report::{Account, Balance, EnergyTerm, Section};
+use crepitus_pages::report::Section;
 use crepitus_scene::Summary;
 use std::borrow::Cow;
 
@@ -33,30 +33,6 @@ pub(super) fn in_brief(s: &Summary) -> Vec<String> {
         ));
     }
     lines
-}
-
-/// The energy balance, for the report to draw.
-pub(super) fn balance(s: &Summary) -> Option<Balance> {
-    let energy = s.plant_energy.as_ref()?;
-    Some(Balance {
-        terms: energy
-            .terms
-            .iter()
-            .map(|t| EnergyTerm {
-                effect: t.effect.to_owned(),
-                what: t.what.to_owned(),
-                account: match t.account {
-                    "given" => Account::Given,
-                    "stored" => Account::Stored,
-                    "lost" => Account::Lost,
-                    _ => Account::Rendered,
-                },
-                joule: t.joule,
-            })
-            .collect(),
-        residual_j: energy.residual_j,
-        residual_relative: energy.residual_relative,
-    })
 }
 
 /// Sources of the work of the rendered torque, in words. None if there
@@ -122,7 +98,8 @@ pub(super) fn impacts_section(s: &Summary) -> Option<Section> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crepitus_scene::run::Blind;
+    use crepitus_plant::energy_balance::Account;
+    use crepitus_scene::run::{Blind, EnergyTerm};
     use crepitus_scene::{Overrides, Scene};
     use std::path::Path;
 
@@ -148,7 +125,7 @@ mod tests {
     fn a_joint_alone_has_none_of_this() {
         let s = summary(STEADY, "[effects.crepitus]\n");
         assert!(in_brief(&s).is_empty());
-        assert!(balance(&s).is_none() && rendered_section(&s).is_none());
+        assert!(s.plant_energy.is_none() && rendered_section(&s).is_none());
     }
 
     #[test]
@@ -161,7 +138,7 @@ mod tests {
         let lines = in_brief(&s);
         assert!(lines[0].contains("torque at the hand"), "{lines:?}");
         assert!(lines[1].contains("balances to"), "{lines:?}");
-        let balance = balance(&s).expect("there is a plant");
+        let balance = s.plant_energy.as_ref().expect("there is a plant");
         let given = |t: &EnergyTerm| t.effect == "motor" && t.account == Account::Given;
         assert!(balance.terms.iter().any(given));
         let names = names(rendered_section(&s));
@@ -173,6 +150,6 @@ mod tests {
     fn a_released_leg_renders_nothing() {
         let s = summary("kind = \"released\"\nfrom_deg = 20", "[effects.limb]\n");
         assert_eq!(in_brief(&s).len(), 1);
-        assert!(balance(&s).is_some() && rendered_section(&s).is_none());
+        assert!(s.plant_energy.is_some() && rendered_section(&s).is_none());
     }
 }

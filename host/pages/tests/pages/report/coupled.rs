@@ -6,7 +6,9 @@ use super::{SINE, page, setup, text};
 use crate::fixture::{Motion, Run, plant};
 use crate::markup::{assert_drawn, assert_printable, count};
 use crepitus_pages::plot::Column as PaperColumn;
-use crepitus_pages::report::{Account, Balance, Collector, EnergyTerm, Figures, Paper, pictures};
+use crepitus_pages::report::{Collector, Figures, Paper, pictures};
+use crepitus_plant::energy_balance::Account;
+use crepitus_scene::run::{EnergyTerm, PlantEnergySummary};
 
 /// A run with a plant that has these columns.
 fn coupled(motion: Motion, rows: u32, step: f64, encoder: bool, names: &[&'static str]) -> Figures {
@@ -39,14 +41,14 @@ fn healthy(rows: u32, step: f64, names: &[&'static str]) -> Figures {
     figures
 }
 
-fn balance() -> Balance {
-    let term = |effect: &str, what: &str, account, joule| EnergyTerm {
-        effect: effect.to_owned(),
-        what: what.to_owned(),
+fn balance() -> PlantEnergySummary {
+    let term = |effect, what, account, joule| EnergyTerm {
+        effect,
+        what,
         account,
         joule,
     };
-    Balance {
+    PlantEnergySummary {
         terms: vec![
             term("hand", "work", Account::Given, 1.2),
             term("hand", "arm", Account::Stored, 1e-5),
@@ -58,6 +60,7 @@ fn balance() -> Balance {
         ],
         residual_j: 1e-14,
         residual_relative: 3e-15,
+        ..PlantEnergySummary::default()
     }
 }
 

@@ -11,8 +11,6 @@ fn texts(language: &str) -> BTreeMap<String, String> {
 
 #[test]
 fn both_languages_have_every_text_with_the_same_values() {
-    let keys: BTreeSet<_> = KEYS.iter().collect();
-    assert_eq!(keys.len(), KEYS.len());
     let values = |text: &str| -> BTreeSet<String> {
         let parts = text.split('{').skip(1);
         parts
@@ -20,14 +18,15 @@ fn both_languages_have_every_text_with_the_same_values() {
             .collect()
     };
     let (english, german) = (texts("en"), texts("de"));
-    for key in KEYS {
-        assert_eq!(values(&english[*key]), values(&german[*key]), "{key}");
+    for (key, text) in english.iter().filter(|(key, _)| key.starts_with("report.")) {
+        assert_eq!(values(text), values(&german[key]), "{key}");
     }
 }
 
 #[test]
 fn every_disorder_and_level_has_a_text() {
-    let has = |key: &str| KEYS.contains(&key);
+    let english = texts("en");
+    let has = |key: &str| english.contains_key(key);
     for finding in Finding::all() {
         assert!(has(&format!("report.disorder.{}", finding.name())));
     }

@@ -2,13 +2,15 @@
 
 use crate::accuracy::Point;
 
-/// See the module.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Measure {
-    EventTime,
-    HeldTorque,
-    TickTorque,
-    Frequency,
+crepitus_model::named! {
+    /// See the module.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub(crate) enum Measure {
+        EventTime => "event-time",
+        HeldTorque => "held-torque",
+        TickTorque => "tick-torque",
+        Frequency => "frequency",
+    }
 }
 
 /// A line of FACTS: an error below it is good enough, or cannot be felt.
@@ -18,52 +20,27 @@ pub(crate) struct PerceptualLine {
     pub(crate) label: &'static str,
 }
 
+const fn line(value: f64, label: &'static str) -> PerceptualLine {
+    PerceptualLine { value, label }
+}
+
 const EVENT_TIME: [PerceptualLine; 2] = [
-    PerceptualLine {
-        value: 5e-4,
-        label: "0.5 ms worth having",
-    },
-    PerceptualLine {
-        value: 1e-4,
-        label: "0.1 ms imperceptible",
-    },
+    line(5e-4, "0.5 ms worth having"),
+    line(1e-4, "0.1 ms imperceptible"),
 ];
 
 const TORQUE: [PerceptualLine; 2] = [
-    PerceptualLine {
-        value: 5e-3,
-        label: "5 mN·m worth having",
-    },
-    PerceptualLine {
-        value: 1e-3,
-        label: "1 mN·m imperceptible",
-    },
+    line(5e-3, "5 mN·m worth having"),
+    line(1e-3, "1 mN·m imperceptible"),
 ];
 
 impl Measure {
-    pub(crate) const ALL: [Self; 4] = [
-        Self::EventTime,
-        Self::HeldTorque,
-        Self::TickTorque,
-        Self::Frequency,
-    ];
-
     pub(crate) fn of(self, point: &Point) -> f64 {
         match self {
             Self::EventTime => point.max_event_error_s,
             Self::HeldTorque => point.rms_held_torque_error_nm,
             Self::TickTorque => point.rms_tick_torque_error_nm,
             Self::Frequency => point.frequency_error_rel,
-        }
-    }
-
-    /// Name for files.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::EventTime => "event-time",
-            Self::HeldTorque => "held-torque",
-            Self::TickTorque => "tick-torque",
-            Self::Frequency => "frequency",
         }
     }
 

@@ -6,101 +6,21 @@ use crate::parameters::{Tabled, settings};
 settings! {
     /// The actuator as it was measured, and what it is to do.
     pub struct VibrationActuatorSettings, group "vibration-actuator" {
-        render {
-            id: 126 always,
-            choice: ["off", "on"],
-            default: 0,
-            meaning: "whether an actuator on the shell vibrates with the joint",
-        },
+        render (126 always) ["off", "on"], 0, "whether an actuator on the shell vibrates with the joint";
     } {
-        gain {
-            id: 127 always,
-            symbol: "g",
-            unit: "1",
-            range: 0.0..=2.0,
-            default: 1.0,
-            meaning: "force at the shell per torque over lever: 1 as at a shell that is held, 0.09 as of a bare knee",
-        },
-        corner_hz {
-            id: 128 always,
-            symbol: "fc",
-            unit: "Hz",
-            range: 8.0..=30.0,
-            default: 10.0,
-            meaning: "frequency above which the actuator takes over",
-        },
-        resonance_hz {
-            id: 129 always,
-            symbol: "f0",
-            unit: "Hz",
-            range: 10.0..=200.0,
-            default: 35.0,
-            meaning: "resonance of the moving mass on its flexure",
-        },
-        damping_ratio {
-            id: 130 always,
-            symbol: "ζ",
-            unit: "1",
-            range: 0.02..=1.0,
-            default: 0.13,
-            meaning: "damping ratio of that resonance, with the coil connected",
-        },
-        moving_mass_g {
-            id: 131 always,
-            symbol: "m",
-            unit: "g",
-            range: 2.0..=300.0,
-            default: 60.0,
-            meaning: "mass that the coil moves",
-        },
-        force_constant_n_per_a {
-            id: 132 always,
-            symbol: "Bl",
-            unit: "N/A",
-            range: 0.1..=20.0,
-            default: 1.1,
-            meaning: "force of the coil for one ampere",
-        },
-        resistance_ohm {
-            id: 133 always,
-            symbol: "R",
-            unit: "Ω",
-            range: 1.0..=20.0,
-            default: 1.8,
-            meaning: "resistance of the coil and of what feeds it",
-        },
-        stroke_mm {
-            id: 134 always,
-            symbol: "X",
-            unit: "mm",
-            range: 0.2..=8.0,
-            default: 1.6,
-            meaning: "way of the mass from its middle to a stop",
-        },
-        continuous_current_a {
-            id: 135 always,
-            symbol: "Ic",
-            unit: "A",
-            range: 0.05..=3.0,
-            default: 1.45,
-            meaning: "current that the coil bears for ever",
-        },
-        supply_v {
-            id: 136 always,
-            symbol: "U",
-            unit: "V",
-            range: 3.0..=12.0,
-            default: 5.0,
-            meaning: "supply of the coil's bridge",
-        },
-        lever_m {
-            id: 137 always,
-            symbol: "r",
-            unit: "m",
-            range: 0.1..=0.5,
-            default: 0.3,
-            meaning: "distance of the actuator from the knee's axis",
-        },
+        gain (127 always) "g" "1", 0.0..=2.0, 1.0,
+            "force at the shell per torque over lever: 1 as at a shell that is held, 0.09 as of a bare knee";
+        corner_hz (128 always) "fc" "Hz", 8.0..=30.0, 10.0, "frequency above which the actuator takes over";
+        resonance_hz (129 always) "f0" "Hz", 10.0..=200.0, 35.0, "resonance of the moving mass on its flexure";
+        damping_ratio (130 always) "ζ" "1", 0.02..=1.0, 0.13,
+            "damping ratio of that resonance, with the coil connected";
+        moving_mass_g (131 always) "m" "g", 2.0..=300.0, 60.0, "mass that the coil moves";
+        force_constant_n_per_a (132 always) "Bl" "N/A", 0.1..=20.0, 1.1, "force of the coil for one ampere";
+        resistance_ohm (133 always) "R" "Ω", 1.0..=20.0, 1.8, "resistance of the coil and of what feeds it";
+        stroke_mm (134 always) "X" "mm", 0.2..=8.0, 1.6, "way of the mass from its middle to a stop";
+        continuous_current_a (135 always) "Ic" "A", 0.05..=3.0, 1.45, "current that the coil bears for ever";
+        supply_v (136 always) "U" "V", 3.0..=12.0, 5.0, "supply of the coil's bridge";
+        lever_m (137 always) "r" "m", 0.1..=0.5, 0.3, "distance of the actuator from the knee's axis";
     }
 }
 

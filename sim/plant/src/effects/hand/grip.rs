@@ -8,9 +8,9 @@
 //! spring and damper toward the intended motion; what lifts the leg acts on the palm,
 //! as the tissue is linear about that force.
 
-use super::{Hand, Lift, NAME};
+use super::{Hand, NAME};
 use crate::boundary::{Boundary, MotionStep, Stretch};
-use crate::chain::{Body, Chain, Flow, Push, Settled};
+use crate::chain::{Body, Flow, Push, Settled};
 use crate::energy_balance::{Account, EnergyBalance};
 
 /// A palm and its tissue.
@@ -43,8 +43,8 @@ impl Palm {
 }
 
 /// A hand that grips what it holds.
-pub(super) struct Grip<L> {
-    hand: Hand<L>,
+pub(super) struct Grip {
+    hand: Hand,
     palm: Palm,
     /// The arm behind it.
     arm: Body,
@@ -63,8 +63,8 @@ struct Solved {
     lift_nm: f64,
 }
 
-impl<L: Lift> Grip<L> {
-    pub(super) fn new(hand: Hand<L>, palm: Palm) -> Self {
+impl Grip {
+    pub(super) fn new(hand: Hand, palm: Palm) -> Self {
         Self {
             arm: hand.arm.intended,
             hand,
@@ -97,9 +97,7 @@ impl<L: Lift> Grip<L> {
     }
 }
 
-impl<L: Lift> Boundary for Grip<L> {
-    fn jump(&mut self, _: f64, _: &mut Body, _: &mut dyn Chain) {}
-
+impl Boundary for Grip {
     fn begin(&mut self, motion: &MotionStep) {
         self.hand.begin(motion);
     }
@@ -109,14 +107,7 @@ impl<L: Lift> Boundary for Grip<L> {
         let inertial = 2.0 * self.palm.inertia_kg_m2 / stretch.length_s;
         let torque = inertial * body.omega_rad_s + solved.torque_nm;
         let slope = inertial + solved.slope_nms;
-        let omega_rad_s = match push.held_by_nm {
-            Some(_) => 0.0,
-            None => (push.torque_nm + torque) / (push.slope_nms + slope),
-        };
-        Flow {
-            omega_rad_s,
-            torque_nm: slope * omega_rad_s - torque,
-        }
+        push.meets(torque, slope)
     }
 
     fn settle(
@@ -146,7 +137,7 @@ impl<L: Lift> Boundary for Grip<L> {
         arm.struck_nms -= palm.inertia_kg_m2 * settled.struck_rad_s;
         self.acceleration_m_s2 = palm.lever_m * gained_rad_s / h;
         self.arm = self.arm.after(h, arm_rad_s);
-        self.hand.lift.did(solved.lift_nm * w * h);
+        self.hand.lift.given_j += solved.lift_nm * w * h;
         *body = next;
     }
 

@@ -66,7 +66,7 @@ pub(super) fn plant_energy(plant: &PlantTotals, tally: Option<&Tally>) -> PlantE
             .map(|t| EnergyTerm {
                 effect: t.effect,
                 what: t.what,
-                account: t.account.name(),
+                account: t.account,
                 joule: t.joule,
             })
             .collect(),

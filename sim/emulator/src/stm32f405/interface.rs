@@ -1,8 +1,8 @@
-//! The chip as a microcontroller.
+//! Interface of the chip to boards and tests.
 
 use super::{CORE, Stm32f405};
 use crate::character::Character;
-use crate::mcu::{Access, Mcu, Pin, Reset, Sampling, Watch};
+use crate::mcu::{Access, Pin, Reset, Sampling, Watch};
 use crate::pins::PinSetup;
 use crate::state_hash::Hash;
 use crate::time::Time;
@@ -10,24 +10,30 @@ use rsemu::core::device::{Device, ResetKind};
 use rsemu::core::space::MemAttrs;
 use rsemu::core::value::Width;
 
-impl Mcu for Stm32f405 {
-    fn run_until(&mut self, until: Time) {
+impl Stm32f405 {
+    /// Runs until `until`, and at most one instruction beyond.
+    pub fn run_until(&mut self, until: Time) {
         self.go_to(until.units(), None);
     }
 
-    fn watch_until(&mut self, until: Time, watch: &mut dyn Watch) {
+    /// Runs as [`Self::run_until`] does, passing every step to `watch`. Slower.
+    pub fn watch_until(&mut self, until: Time, watch: &mut dyn Watch) {
         self.go_to(until.units(), Some(watch));
     }
 
-    fn now(&self) -> Time {
+    /// Current time.
+    pub fn now(&self) -> Time {
         Time::from_units(self.now)
     }
 
-    fn cycles(&self) -> u64 {
+    /// The core's cycles since it was switched on; none pass while it sleeps.
+    pub fn cycles(&self) -> u64 {
         self.cycles
     }
 
-    fn peek(&self, address: u32) -> Option<u32> {
+    /// A word of memory or of a register, without side effects; `None` at an
+    /// unmapped address.
+    pub fn peek(&self, address: u32) -> Option<u32> {
         if address >= CORE {
             return self.core.with_sys(|sys| sys.read_word(address, true));
         }
@@ -36,7 +42,8 @@ impl Mcu for Stm32f405 {
         word.ok().and_then(|word| u32::try_from(word).ok())
     }
 
-    fn poke(&mut self, address: u32, value: u32) {
+    /// Writes a word as a debugger does.
+    pub fn poke(&mut self, address: u32, value: u32) {
         if self.core.with_sys(|sys| sys.write_word(address, value)) {
             return;
         }
@@ -52,20 +59,24 @@ impl Mcu for Stm32f405 {
         self.settle();
     }
 
-    fn listen(&mut self, registers: &[u32]) {
+    /// Records every access to these registers from now on.
+    pub fn listen(&mut self, registers: &[u32]) {
         self.chip.bus.listen(registers);
     }
 
-    fn take_accesses(&mut self) -> Vec<Access> {
+    /// Takes the accesses recorded since the last call, in order.
+    pub fn take_accesses(&mut self) -> Vec<Access> {
         self.chip.bus.take_accesses()
     }
 
-    fn pin(&self, pin: Pin) -> bool {
+    /// The level at a pin, as the chip sees it.
+    pub fn pin(&self, pin: Pin) -> bool {
         self.port(pin)
             .is_some_and(|port| port.pin_levels() >> pin.number() & 1 == 1)
     }
 
-    fn drive_pin(&mut self, pin: Pin, level: bool) {
+    /// Drives a pin from outside.
+    pub fn drive_pin(&mut self, pin: Pin, level: bool) {
         if let Some(port) = self.port(pin) {
             port.set_external(pin.number(), level);
         }
@@ -78,34 +89,43 @@ impl Mcu for Stm32f405 {
         self.settle();
     }
 
-    fn pin_setup(&self, pin: Pin) -> PinSetup {
+    /// The setup of a pin.
+    pub fn pin_setup(&self, pin: Pin) -> PinSetup {
         self.chip.pins.setup(pin)
     }
 
-    fn set_analog(&mut self, pin: Pin, share: f64) {
+    /// Sets the voltage at a pin, as share of the converters' reference.
+    pub fn set_analog(&mut self, pin: Pin, share: f64) {
         self.chip.analog.set(pin, share);
     }
 
-    fn take_samplings(&mut self) -> Vec<Sampling> {
+    /// Takes the sampling intervals of the converters since the last call.
+    pub fn take_samplings(&mut self) -> Vec<Sampling> {
         let adcs = self.chip.adcs.0.iter();
         adcs.flat_map(|adc| adc.take_samplings()).collect()
     }
 
-    fn link_feed(&mut self, character: Character) {
+    /// Puts a character on the wire to the link's receiver, in order. Lost unless its pin
+    /// is connected to it when it arrives.
+    pub fn link_feed(&mut self, character: Character) {
         self.chip.usart.feed(character);
         self.chip.bus.touch("USART6");
         self.settle();
     }
 
-    fn link_take(&mut self) -> Vec<Character> {
+    /// Takes the characters sent by the link since the last call: those at whose ends
+    /// its pin was connected to it.
+    pub fn link_take(&mut self) -> Vec<Character> {
         self.chip.usart.take_sent()
     }
 
-    fn link_character_units(&self) -> u64 {
+    /// Units of time of a character on the link, as the program has set it.
+    pub fn link_character_units(&self) -> u64 {
         self.chip.usart.character_units()
     }
 
-    fn reset(&mut self, reset: Reset) {
+    /// Resets the chip.
+    pub fn reset(&mut self, reset: Reset) {
         if reset == Reset::PowerOn {
             self.memory.forget();
             self.chip.rcc.reset(ResetKind::Cold);
@@ -128,19 +148,24 @@ impl Mcu for Stm32f405 {
         }
     }
 
-    fn take_resets(&mut self) -> Vec<(Time, Reset)> {
+    /// Takes the chip's own resets since the last call.
+    pub fn take_resets(&mut self) -> Vec<(Time, Reset)> {
         std::mem::take(&mut self.resets)
     }
 
-    fn set_hung(&mut self, is_hung: bool) {
+    /// Stops the core while all else runs: like a program that hangs with
+    /// interrupts masked. A reset ends it.
+    pub fn set_hung(&mut self, is_hung: bool) {
         self.is_hung = is_hung;
     }
 
-    fn is_locked_up(&self) -> bool {
+    /// Returns whether the core is in lock-up.
+    pub fn is_locked_up(&self) -> bool {
         self.core.is_locked_up()
     }
 
-    fn state_hash(&self) -> u64 {
+    /// A hash of memory, core and registers, for comparing two runs.
+    pub fn state_hash(&self) -> u64 {
         let mut hash = Hash::default();
         let registers = self.core.regs();
         hash.words(registers.r);
@@ -164,7 +189,9 @@ impl Mcu for Stm32f405 {
         hash.value()
     }
 
-    fn not_modelled(&self) -> Vec<String> {
+    /// Features used by the program that are not modelled; unmapped addresses,
+    /// parts whose clock was off. Empty if all is well.
+    pub fn not_modelled(&self) -> Vec<String> {
         let strays = self.chip.bus.strays();
         let strays = strays.iter().map(|address| format!("{address:#010x}"));
         let asked = [

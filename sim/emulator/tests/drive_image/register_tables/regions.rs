@@ -1,6 +1,6 @@
 //! The regions of the MPU, as a table (ARM DDI 0403E, B3.5).
 
-use crate::stm32f405::Stm32f405;
+use crepitus_emulator::Stm32f405;
 use std::fmt::Write;
 
 /// Access permissions of privileged code, by the field AP.

@@ -4,17 +4,14 @@
 //! left out. A register with its reset value is not shown, and one that is not
 //! shown has its reset value.
 
-mod fields;
-mod parts;
 mod regions;
-mod timers;
-mod usb;
 
-use crate::mcu::{Mcu, Pin};
-use crate::pins::{Mode, Pull};
-use crate::stm32f405::Stm32f405;
-use fields::{Part, Register};
+use crepitus_emulator::pins::{Mode, Pull};
+use crepitus_emulator::{Pin, Stm32f405};
 use std::fmt::Write;
+
+/// Parts, their registers and fields; the head of the file says how they are written.
+const PARTS: &str = include_str!("register_tables/parts.txt");
 
 /// Interrupts of the chip.
 const INTERRUPTS: u32 = 82;
@@ -46,7 +43,7 @@ const DEBUG_PINS: [Pin; 5] = [
 ];
 
 /// The tables of an image: core and stack, interrupts, pins, protected memory, parts.
-pub fn tables(mcu: &Stm32f405) -> String {
+pub(crate) fn tables(mcu: &Stm32f405) -> String {
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = interrupts(mcu, &mut text);
@@ -115,52 +112,95 @@ fn pins(mcu: &Stm32f405, text: &mut String) -> std::fmt::Result {
 
 fn registers(mcu: &Stm32f405, text: &mut String) -> std::fmt::Result {
     writeln!(text, "| register | value | fields |\n|---|---|---|")?;
-    for Part {
-        name: part,
-        base,
-        registers,
-    } in parts::PARTS
-    {
-        for register in *registers {
-            let value = word(mcu, base + register.offset) & !register.ignored;
-            if value != register.reset {
-                line(part, register, value, text)?;
+    let table = PARTS.replace("\n    ", " ");
+    let is_row = |row: &&str| !row.is_empty() && !row.starts_with('#');
+    let rows: Vec<&str> = table.lines().filter(is_row).collect();
+    for part in rows.iter().take_while(|row| !row.starts_with('[')) {
+        let mut words = part.split(' ');
+        let name = words.next().unwrap_or_default();
+        let base = words.next().map_or(0, hex);
+        for list in words {
+            let head = format!("[{list}]");
+            let own = rows.iter().skip_while(|row| **row != head).skip(1);
+            for register in own.take_while(|row| !row.starts_with('[')) {
+                let (register, fields) = register.split_once(": ").unwrap_or((*register, ""));
+                let fields = if fields.starts_with('@') {
+                    rows.iter()
+                        .find_map(|row| row.strip_prefix(fields)?.strip_prefix(' '))
+                        .unwrap_or_default()
+                } else {
+                    fields
+                };
+                line(mcu, (name, base), register, fields, text)?;
             }
         }
     }
     Ok(())
 }
 
-fn line(part: &str, register: &Register, value: u32, text: &mut String) -> std::fmt::Result {
-    let mut known = register.ignored;
-    let mut words = Vec::new();
-    for field in register.fields {
-        let mask = u32::MAX >> (32 - field.width) << field.shift;
+/// Writes a register, unless it has its value after a reset.
+fn line(
+    mcu: &Stm32f405,
+    (part, base): (&str, u32),
+    register: &str,
+    fields: &str,
+    text: &mut String,
+) -> std::fmt::Result {
+    let mut register = register.split(' ');
+    let name = register.next().unwrap_or_default();
+    let offset = register.next().map_or(0, hex);
+    let (mut reset, mut known) = (0, 0);
+    for bits in register {
+        match bits.strip_prefix('=') {
+            Some(value) => reset = hex(value),
+            None => known = hex(bits.trim_start_matches('-')),
+        }
+    }
+    let value = word(mcu, base + offset) & !known;
+    if value == reset {
+        return Ok(());
+    }
+    let mut shown = Vec::new();
+    for field in fields.split("; ").filter(|field| !field.is_empty()) {
+        let (place, field) = field.split_once(' ').unwrap_or((field, ""));
+        let (shift, width) = place.split_once('+').unwrap_or((place, "1"));
+        let (shift, width) = (decimal(shift), decimal(width));
+        let (name, meanings, is_brief) = match field.split_once('=') {
+            Some((name, meanings)) => {
+                let brief = name.strip_suffix('?');
+                (brief.unwrap_or(name), meanings, brief.is_some())
+            }
+            None if place.contains('+') => (field, "", true),
+            None => (field, "off|on", true),
+        };
+        let mask = u32::MAX >> (32 - width) << shift;
         known |= mask;
-        if field.is_brief && value & mask == register.reset & mask {
+        if is_brief && value & mask == reset & mask {
             continue;
         }
-        let number = (value & mask) >> field.shift;
-        let word = field
-            .words
-            .get(number as usize)
-            .copied()
-            .unwrap_or_default();
-        words.push(match word {
-            "" => format!("{} {number}", field.name),
-            word => format!("{} {word}", field.name),
+        let number = (value & mask) >> shift;
+        shown.push(match meanings.split('|').nth(number as usize) {
+            None | Some("") => format!("{name} {number}"),
+            Some(meaning) => format!("{name} {meaning}"),
         });
     }
     let address = ADDRESSES.iter().find(|(known, _)| *known == value);
-    words.extend(address.map(|(_, name)| (*name).to_owned()));
-    let others = (value ^ register.reset) & !known;
+    shown.extend(address.map(|(_, name)| (*name).to_owned()));
+    let others = (value ^ reset) & !known;
     if others != 0 && address.is_none() {
-        words.push(format!("bits {others:#x} differ from reset"));
+        shown.push(format!("bits {others:#x} differ from reset"));
     }
-    let name = register.name;
     writeln!(
         text,
         "| {part}_{name} | {value:#010x} | {} |",
-        words.join("; ")
+        shown.join("; ")
     )
+}
+
+fn hex(digits: &str) -> u32 {
+    u32::from_str_radix(digits, 16).expect("a hexadecimal number of the table")
+}
+
+fn decimal(digits: &str) -> u32 {
+    digits.parse().expect("a number of the table")
 }
