@@ -16,7 +16,7 @@
 //! | the true events, their matching, and the errors | [`true_events`], [`matching`], [`event_errors`] |
 //! | limits parsed from text | [`limits`] |
 //! | progress and cancellation of a study | [`watcher`] |
-//! | pictures that explain one hard case, or a build-up, each | [`story`] |
+//! | pictures that explain one hard case, or a build-up, each | `story` |
 //! | many runs of one scene, a row each | [`sweep`] |
 //!
 //! A study is one folder: its engine; `report`, how its data are drawn on its page; `words`, what is said of them on the
@@ -37,7 +37,7 @@ mod parallel;
 mod report_text;
 pub mod sampling;
 pub mod stability;
-pub mod story;
+mod story;
 pub mod sweep;
 pub mod symptoms;
 pub mod true_events;

@@ -9,40 +9,39 @@
 //!
 //! | to find | look in |
 //! |---|---|
-//! | the cases | [`catalogue`], and their parts: [`case`], [`input`], [`criterion`] |
+//! | the cases | [`catalogue`], and their parts: [`Case`], [`Input`], [`Criterion`] |
 //! | the tested solvers | [`subject`] |
-//! | how a case is run and judged | `source`, `observe`, `symptom`, `actuator`, `energy_audit`, `judge` |
+//! | how a case is run and judged | `source`, `observe`, `device_run`, `symptom`, `actuator`, `energy_audit`, `criteria` |
 //! | results | [`verdict`], [`matrix`] |
 //! | an input as data, for a joint elsewhere | [`replay`] |
-//! | the file of results | [`cases_table`] |
+//! | the file of results | `cases_table` |
 //! | runs that explain a case | [`story`] |
 //! | what is printed, and the page's text | [`StabilityOutcome`] |
 
 mod actuator;
-pub mod case;
-pub mod cases_table;
+mod case;
+mod cases_table;
 pub mod catalogue;
+mod criteria;
 pub mod criterion;
+mod device_run;
 mod energy_audit;
 mod guarded_joint;
-pub mod input;
-mod judge;
-mod locators;
+pub(crate) mod input;
 pub mod matrix;
 mod observation;
 mod observe;
 mod parameter_changes;
-mod rendered;
 pub mod replay;
 pub mod report;
 mod scene_run;
-mod shaking_hand;
 mod source;
 pub mod story;
 pub mod subject;
 mod symptom;
 pub(crate) mod text;
 pub mod verdict;
+mod view;
 mod without_steps;
 mod words;
 

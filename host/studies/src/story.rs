@@ -1,17 +1,10 @@
 //! Stories: pictures of one or several panels, one above the other, each with a
-//! heading, on one width.
-//!
-//! One file a story, with a function that makes it of a study's data.
+//! heading, on one width. Those of effects are here, with a function that makes each of its study's
+//! data; those of hard cases are with them.
 
 pub(crate) mod build_up;
 pub(crate) mod hand_torque;
-mod implicit_euler;
-mod parameter_change;
-mod restick_rules;
-mod three_solvers;
-mod turn_back;
 
-use crate::stability::story::Stories;
 use crepitus_pages::plot::palette::{CURVES, Ink, LEVEL, TEXT};
 use crepitus_pages::plot::{
     Anchor, Axis, Chart, Figure, Key, Mark, Marker, Panel, Paper, Plot, Point, Sign, Stroke, Svg,
@@ -31,20 +24,6 @@ const NAMES: f64 = 84.0;
 /// The inks of lines in the order of their first appearance: far apart in hue
 /// and in lightness.
 const INKS: [Ink; 4] = [CURVES[7], CURVES[0], CURVES[2], CURVES[3]];
-
-/// The stories of hard cases as figures of a page, or files.
-pub fn figures(stories: &Stories, paper: Paper) -> Vec<Figure> {
-    [
-        three_solvers::story(&stories.three_solvers),
-        implicit_euler::story(&stories.implicit_euler),
-        restick_rules::story(&stories.restick_rules),
-        parameter_change::story(&stories.parameter_change),
-        turn_back::story(&stories.turn_back),
-    ]
-    .iter()
-    .map(|story| figure(story, paper))
-    .collect()
-}
 
 /// A picture of one or several panels, one above the other.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -138,7 +117,7 @@ impl Series {
     }
 }
 
-fn mark(at: f64, name: &str) -> Mark {
+pub(crate) fn mark(at: f64, name: &str) -> Mark {
     Mark {
         at,
         name: name.to_owned(),

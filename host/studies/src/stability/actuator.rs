@@ -1,10 +1,10 @@
 //! The vibration actuator on a leg, with the stages of the drive in its loop.
 
-use super::input::{ActuatorLoop, ActuatorRun, Upset};
+use super::input::{ActuatorLoop, ActuatorRun, Input, Lost, Upset};
 use super::observation::{ActuatorObservation, Observation};
 use super::parameter_changes::SLEW_NM_PER_S;
 use super::subject::Subject;
-use crate::vibration::loop_gain;
+use crate::vibration::loop_gain::{self, CUFFS};
 use crepitus_model::control::device_limits::LimitSettings;
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
@@ -22,6 +22,17 @@ use crepitus_scene::scene::Precision;
 use crepitus_scene::{Overrides, Scene, Walk};
 use std::path::Path;
 
+/// A firm hand on a nominal device.
+pub(super) const NOMINAL: ActuatorRun = ActuatorRun {
+    with: "",
+    preset: "coarse",
+    speed_rad_s: 0.5,
+    keys: &[],
+    backlash: false,
+    upsets: &[],
+    lost: Lost::NONE,
+};
+
 /// The stages of the drive.
 type Stages<F> = Pipeline<
     F,
@@ -32,39 +43,38 @@ type Stages<F> = Pipeline<
 >;
 
 /// Runs it; a scene that is refused is an overflow at 0 s.
-pub(super) fn observe(subject: Subject, run: &ActuatorRun, late_s: f64) -> Observation {
-    let text = run.scene(subject.precision);
-    let parsed = Scene::parse(Path::new("shaken.toml"), &text, &Overrides::default());
-    let seen = parsed.ok().and_then(|scene| {
+pub(super) fn observe(
+    subject: Subject,
+    (input, run): (&Input, &ActuatorRun),
+    late_s: f64,
+) -> Observation {
+    let seen = parsed(&run.scene(subject.precision, input.duration_s, input.step_s));
+    let seen = seen.and_then(|scene| {
         match subject.precision {
-            Precision::F32 => shake::<f32>(run, &scene, late_s),
-            Precision::F64 => shake::<f64>(run, &scene, late_s),
+            Precision::F32 => shake::<f32>((input, run), &scene, late_s),
+            Precision::F64 => shake::<f64>((input, run), &scene, late_s),
         }
         .ok()
     });
-    seen.unwrap_or_else(|| Observation {
-        step_s: run.step_s,
-        overflow_s: Some(0.0),
-        ..Observation::default()
-    })
+    seen.unwrap_or_else(Observation::refused)
+}
+
+fn parsed(text: &str) -> Option<Scene> {
+    Scene::parse(Path::new("shaken.toml"), text, &Overrides::default()).ok()
 }
 
 /// The largest gains of the loop over hands and cuffs; a scene that is refused is an
 /// overflow at 0 s.
 pub(super) fn observe_loop(linear: &ActuatorLoop) -> Observation {
-    let text = super::catalogue::ACTUATOR.scene(Precision::F64);
-    let Ok(scene) = Scene::parse(Path::new("shaken.toml"), &text, &Overrides::default()) else {
-        return Observation {
-            overflow_s: Some(0.0),
-            ..Observation::default()
-        };
+    let Some(scene) = parsed(&NOMINAL.scene(Precision::F64, 2.0, 5e-5)) else {
+        return Observation::refused();
     };
     let mut seen = Observation::default();
     let whole = &mut seen.actuator.whole;
     whole.ticks = 1.0;
     for hand in linear.hands {
-        for cuff in linear.cuffs_nm_per_rad {
-            let margin = loop_gain::margin(&scene, hand, *cuff, linear.late_ticks);
+        for cuff in CUFFS {
+            let margin = loop_gain::margin(&scene, hand, cuff, linear.late_ticks);
             whole.loop_gain = whole.loop_gain.max(margin.largest);
             whole.loop_in_phase = whole.loop_in_phase.max(1.0 / margin.stable_to);
         }
@@ -97,41 +107,33 @@ fn stages<F: Real>(scene: &Scene, timing: &Timing) -> Result<Stages<F>, Settings
 }
 
 fn shake<F: Real>(
-    run: &ActuatorRun,
+    (input, run): (&Input, &ActuatorRun),
     scene: &Scene,
     late_s: f64,
 ) -> Result<Observation, SettingsError> {
-    let encoder_settings = EncoderSettings::default();
+    let (step_s, encoder_settings) = (input.step_s, EncoderSettings::default());
     let timing = Timing {
-        step_s: run.step_s,
+        step_s,
         delay_ticks: MOST_DELAY_TICKS,
         sensing: Sensing::of_encoder(&encoder_settings),
     };
     let mut stages = stages::<F>(scene, &timing)?;
     let mut settings = scene.effect_settings();
     let mut plant = scene.assemble()?;
-    let mut walk = Walk::new(&scene.motion, run.step_s);
+    let mut walk = Walk::new(&scene.motion, step_s);
     let encoder = Encoder::new(&encoder_settings);
     let first = encoder.count(plant.shaft().angle_rad);
     let omega = F::from_f64(plant.shaft().omega_rad_s);
-    let mut reader = EncoderReader::<F>::new(&encoder_settings, run.step_s, first, omega)?;
+    let mut reader = EncoderReader::<F>::new(&encoder_settings, step_s, first, omega)?;
     let names = plant.columns();
     let place = |name: &str| names.iter().position(|column| *column == name);
     let places = ["shell_acceleration_m_s2", "excursion_m", "coil_current_a"].map(place);
-    let mut seen = Observation {
-        step_s: run.step_s,
-        ..Observation::default()
-    };
-    let mut watched = Watched {
-        late_s,
-        seen: ActuatorObservation::default(),
-    };
+    let mut seen = Observation::of_steps(step_s);
     let mut row = Vec::new();
     let (mut is_armed, mut coil_v) = (true, 0.0);
     let mut done = 0;
     let mut count = first;
-    let steps = (run.duration_s / run.step_s).round().whole();
-    for n in 1..=steps {
+    for n in 1..=input.steps().whole() {
         let now_s = walk.time_s();
         while let Some((_, upset)) = run.upsets.get(done).filter(|(at_s, _)| *at_s <= now_s) {
             done += 1;
@@ -146,13 +148,13 @@ fn shake<F: Real>(
                     }
                     next.check(None)?;
                     let changes = next.changes(&timing, (&settings, &timing))?;
-                    let slew_nm = F::from_f64(SLEW_NM_PER_S * run.step_s);
+                    let slew_nm = F::from_f64(SLEW_NM_PER_S * step_s);
                     stages.effects.change(&changes, slew_nm);
                     settings = next;
                 }
             }
         }
-        let sample = if run.lost.takes(n, run.step_s) {
+        let sample = if run.lost.takes(n, step_s) {
             reader.miss();
             Sample::Lost
         } else {
@@ -173,7 +175,7 @@ fn shake<F: Real>(
         if !is_armed {
             plant.set_coil(Coil::Open);
         }
-        coil_v = shown.coil_v.to_f64();
+        let last_v = std::mem::replace(&mut coil_v, shown.coil_v.to_f64());
         walk.advance(&mut plant);
         row.clear();
         plant.write(&mut row);
@@ -187,52 +189,19 @@ fn shake<F: Real>(
         }
         seen.steps += 1;
         seen.add_torque::<F>(torque_nm);
-        watched.add(
-            now_s,
-            values.map(|value| value.unwrap_or(0.0)),
-            coil_v,
-            plant.shaft().omega_rad_s,
-        );
-    }
-    seen.actuator = watched.finish();
-    Ok(seen)
-}
-
-/// Measures as it goes.
-struct Watched {
-    late_s: f64,
-    seen: ActuatorObservation,
-}
-
-impl Watched {
-    fn add(
-        &mut self,
-        now_s: f64,
-        [m_s2, excursion_m, current_a]: [f64; 3],
-        volts: f64,
-        omega: f64,
-    ) {
-        let seen = &mut self.seen;
-        let stepped = (volts - seen.last_v).abs();
-        seen.last_v = volts;
-        let parts: &mut [_] = if now_s >= self.late_s {
-            &mut [&mut seen.whole, &mut seen.late][..]
-        } else {
-            &mut [&mut seen.whole][..]
-        };
-        for part in parts {
+        let shaft_rad_s = plant.shaft().omega_rad_s;
+        let [m_s2, excursion_m, current_a] = values.map(|value| value.unwrap_or(0.0));
+        let ActuatorObservation { whole, late } = &mut seen.actuator;
+        let late = Some(late).filter(|_| now_s >= late_s);
+        for part in [whole].into_iter().chain(late) {
             part.ticks += 1.0;
             part.acceleration_squares += m_s2 * m_s2;
             part.current_squares += current_a * current_a;
-            part.acceleration_m_s2 = part.acceleration_m_s2.max(m_s2.abs());
             part.excursion_m = part.excursion_m.max(excursion_m.abs());
-            part.volts = part.volts.max(volts.abs());
-            part.volts_a_tick = part.volts_a_tick.max(stepped);
-            part.shaft_rad_s = part.shaft_rad_s.max(omega.abs());
+            part.volts = part.volts.max(coil_v.abs());
+            part.volts_a_tick = part.volts_a_tick.max((coil_v - last_v).abs());
+            part.shaft_rad_s = part.shaft_rad_s.max(shaft_rad_s.abs());
         }
     }
-
-    fn finish(self) -> ActuatorObservation {
-        self.seen
-    }
+    Ok(seen)
 }

@@ -1,13 +1,12 @@
 //! A hard case: why it is hard, its exact inputs, and its criteria.
 
-use super::criterion::Criterion;
-use super::input::Input;
+use super::criteria::survives;
+use super::criterion::{Basis, Criterion};
+use super::input::{Input, unlike_the_paper};
 use super::subject::{Rung, Subject};
-use super::text::Plain;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters, Settings};
-use std::fmt::Write;
 
 /// A hard case.
 #[derive(Clone, Debug)]
@@ -24,14 +23,16 @@ pub struct Case {
     pub source: &'static str,
     /// Hours of simulated time: only with `--long`.
     pub long: bool,
+    /// Subjects that it applies to.
+    pub of: fn(Subject) -> bool,
     /// Subjects that must hold; the others are only shown.
     pub must: fn(Subject) -> bool,
-    /// The trials of a subject; empty if the case does not apply to it.
+    /// The trials of a subject, whose convention they get.
     pub trials: fn(Subject) -> Vec<Trial>,
 }
 
 /// One run of a case and its criteria.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone)]
 pub struct Trial {
     /// The joint.
     pub settings: Settings,
@@ -41,21 +42,29 @@ pub struct Trial {
     pub criteria: Vec<Criterion>,
 }
 
+impl Input {
+    /// A trial with this input, of the paper's joint.
+    pub(super) fn meets(self, criteria: impl Into<Vec<Criterion>>) -> Trial {
+        Trial {
+            settings: Settings::default(),
+            input: self,
+            criteria: criteria.into(),
+        }
+    }
+}
+
 impl Trial {
+    /// The trial of a joint with these J, kr, c, Tk and Ts.
+    pub(super) fn with(mut self, values: [f64; 5]) -> Self {
+        self.settings.parameters = Parameters::of(values);
+        self
+    }
+
     /// Describes the joint, where it differs from the paper's, and its input.
     pub fn describe(&self) -> String {
-        let p = &self.settings.parameters;
-        let paper = Parameters::default();
-        let mut text = String::new();
-        for ((spec, value), default) in Parameters::TABLE.iter().zip(p.values()).zip(paper.values())
-        {
-            if value != default {
-                let value = Plain(value);
-                // Writing to a string cannot fail.
-                let _ = write!(text, "{} = {value} {}, ", spec.symbol, spec.unit);
-            }
-        }
-        text + &self.input.to_string()
+        let mut parts = unlike_the_paper(&self.settings.parameters);
+        parts.push(self.input.to_string());
+        parts.join(", ")
     }
 }
 
@@ -75,16 +84,22 @@ impl Case {
     /// rung that needs the exact motion gets no other; the reference only
     /// motions that are prescribed and not sampled.
     pub fn trials_of(&self, subject: Subject) -> Vec<Trial> {
+        if !(self.of)(subject) {
+            return Vec::new();
+        }
         let mut trials = (self.trials)(subject);
+        for trial in &mut trials {
+            trial.settings.convention = subject.convention;
+        }
         if subject.solver.needs_exact_motion() {
             trials.retain(|trial| trial.input.is_exact());
         }
         if subject.solver == Rung::Reference {
             trials.retain(|trial| trial.input.suits_the_reference());
             for trial in &mut trials {
-                trial.criteria.retain(Criterion::suits_the_reference);
+                trial.criteria.retain(|c| c.basis == Basis::Run);
                 if trial.criteria.is_empty() {
-                    trial.criteria.push(Criterion::Survives);
+                    trial.criteria.push(survives());
                 }
             }
         }
@@ -106,7 +121,7 @@ impl Case {
 
 /// The subjects that must hold by default: `exact-events` and the reference,
 /// and under `frozen` also `exact-break`, which is the same there.
-pub fn located(subject: Subject) -> bool {
+pub(super) fn located(subject: Subject) -> bool {
     match subject.solver {
         Rung::Reference | Rung::Ladder(Solver::ExactEvents) => true,
         Rung::Ladder(Solver::ExactBreak) => subject.convention == Convention::Frozen,

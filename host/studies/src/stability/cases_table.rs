@@ -9,7 +9,7 @@ use crepitus_pages::table::Table;
 
 /// A row a cell. `measured` and `limit` are in `unit`; of other events than
 /// the true ones they are the counts.
-pub fn cases_table<'r>(cells: &'r [(&Case, &Cell)]) -> Table<'r, (&'r Case, &'r Cell)> {
+pub(super) fn cases_table<'r>(cells: &'r [(&Case, &Cell)]) -> Table<'r, (&'r Case, &'r Cell)> {
     let margin =
         |of: fn(Margin) -> f64| move |(_, cell): &(&Case, &Cell)| margin(&cell.verdict).map(of);
     Table::of(cells)
@@ -56,98 +56,50 @@ fn margin(verdict: &Verdict) -> Option<Margin> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stability::{Matrix, Row, Subject, catalogue};
-
-    /// The matrix of one case in which the first subjects stand like this.
-    fn matrix(verdicts: &[(Verdict, &str)]) -> Matrix {
-        let case = catalogue::find("H01").unwrap();
-        let cells = Subject::all().into_iter().zip(verdicts);
-        let cells = cells.map(|(subject, (verdict, detail))| Cell {
-            subject,
-            must_hold: verdict.holds(),
-            verdict: *verdict,
-            detail: (*detail).to_owned(),
-        });
-        let cells = cells.collect();
-        Matrix {
-            rows: vec![Row { case, cells }],
-            wall_s: 0.0,
-        }
-    }
-
-    /// The fields of the lines, unquoted.
-    fn read(text: &str) -> Vec<Vec<String>> {
-        let mut reader = text.chars().peekable();
-        let (mut lines, mut line, mut field) = (Vec::new(), Vec::new(), String::new());
-        let mut quoted = false;
-        while let Some(c) = reader.next() {
-            match c {
-                '"' if quoted && reader.peek() == Some(&'"') => {
-                    reader.next();
-                    field.push('"');
-                }
-                '"' => quoted = !quoted,
-                ',' if !quoted => line.push(std::mem::take(&mut field)),
-                '\n' if !quoted => {
-                    line.push(std::mem::take(&mut field));
-                    lines.push(std::mem::take(&mut line));
-                }
-                c => field.push(c),
-            }
-        }
-        assert!(!quoted && field.is_empty() && line.is_empty());
-        lines
-    }
+    use crate::stability::{Subject, catalogue};
 
     #[test]
     fn rows_have_the_columns_and_read_back() {
         let third = 1.0 / 3.0;
-        let margin = |measured, limit, unit| Margin {
-            measured,
-            limit,
-            unit,
+        let held = Margin {
+            measured: third,
+            limit: 1e-12,
+            unit: "N·m",
         };
-        let fails = |what, at_s| Verdict::Fails {
-            what,
-            at_s,
-            flagged: true,
+        let others = Failure::OtherEvents {
+            found: 1,
+            expected: 637,
         };
-        let lines = read(
-            &cases_table(
-                &matrix(&[
-                    (
-                        Verdict::Holds(margin(third, 1e-12, "N·m")),
-                        "at 1 rad/s, \"slow\"",
-                    ),
-                    (
-                        Verdict::Degrades {
-                            margin: margin(f64::NAN, 0.5, ""),
-                            flagged: false,
-                        },
-                        "two\nlines",
-                    ),
-                    (
-                        fails(
-                            Failure::OtherEvents {
-                                found: 1,
-                                expected: 637,
-                            },
-                            None,
-                        ),
-                        "",
-                    ),
-                    (fails(Failure::Overflow, Some(third)), "the second trial"),
-                ])
-                .cells(),
-            )
-            .to_csv(),
-        );
+        let fails = |what, at_s| Verdict::fails(what, at_s).flag(true);
+        let verdicts = [
+            (Verdict::Holds(held), "at 1 rad/s, \"slow\""),
+            (Verdict::of(f64::NAN, 0.5, ""), "two\nlines"),
+            (fails(others, None), ""),
+            (fails(Failure::Overflow, Some(third)), "the second trial"),
+        ];
+        let case = catalogue::find("H01").unwrap();
+        let cells: Vec<Cell> = Subject::all()
+            .into_iter()
+            .zip(verdicts)
+            .map(|(subject, (verdict, detail))| Cell {
+                subject,
+                must_hold: verdict.holds(),
+                verdict,
+                detail: detail.to_owned(),
+            })
+            .collect();
+        let rows: Vec<_> = cells.iter().map(|cell| (&case, cell)).collect();
+        let text = cases_table(&rows).to_csv();
+        let lines: Vec<Vec<String>> = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .from_reader(text.as_bytes())
+            .records()
+            .map(|record| record.unwrap().iter().map(str::to_owned).collect())
+            .collect();
         assert_eq!(lines.len(), 5);
+        assert_eq!(lines[0].len(), 13);
         let column = |name| lines[0].iter().position(|h| h == name).unwrap();
         let of = |line: usize, name| lines[line][column(name)].as_str();
-        for line in &lines {
-            assert_eq!(line.len(), 13);
-        }
         assert_eq!(
             lines[1][..7],
             [

@@ -34,7 +34,6 @@ mod tools;
 
 use super::case::Case;
 
-pub(super) use actuator::NOMINAL as ACTUATOR;
 pub(crate) use motions::WANDER;
 
 /// The tables of the themes.

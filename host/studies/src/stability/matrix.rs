@@ -1,17 +1,16 @@
 //! The matrix of cases and subjects.
 
 use super::case::{Case, Trial};
-use super::criterion::Criterion;
-use super::input::Input;
-use super::judge::{Evidence, common, judge, remark};
+use super::criterion::{Basis, Evidence, common};
+use super::input::{Input, What};
 use super::observation::Observation;
 use super::observe::observe;
 use super::subject::Subject;
-use super::verdict::{Failure, Margin, Verdict};
-use crate::sampling::Sampling;
+use super::verdict::{Failure, Verdict};
 use crate::true_events::{TrueEvent, true_events};
 use crate::watcher::{Cancelled, StudyError, Watcher};
 use crepitus_model::{Real, Settings, SettingsError};
+use serde::Serialize;
 use std::rc::Rc;
 use std::time::Instant;
 
@@ -57,21 +56,47 @@ pub struct Matrix {
 
 impl Matrix {
     /// All cells with their cases.
-    pub fn cells(&self) -> Vec<(&Case, &Cell)> {
-        self.rows
-            .iter()
-            .flat_map(|row| row.cells.iter().map(|cell| (&row.case, cell)))
-            .collect()
+    pub fn cells(&self) -> impl Iterator<Item = (&Case, &Cell)> {
+        let rows = self.rows.iter();
+        rows.flat_map(|row| row.cells.iter().map(|cell| (&row.case, cell)))
     }
 
     /// The cells that must hold and do not.
     pub fn broken(&self) -> impl Iterator<Item = (&Case, &Cell)> {
-        self.rows.iter().flat_map(|row| {
-            row.cells
-                .iter()
-                .filter(|cell| cell.must_hold && !cell.verdict.holds())
-                .map(|cell| (&row.case, cell))
-        })
+        self.cells().filter(|(_, cell)| cell.is_broken())
+    }
+}
+
+/// Numbers of cells: by verdict, those that must hold, and those that must hold and do not.
+#[derive(Clone, Copy, Default, Serialize)]
+pub(super) struct Counts {
+    pub(super) holds: usize,
+    pub(super) degrades: usize,
+    pub(super) fails: usize,
+    pub(super) must_hold: usize,
+    pub(super) broken: usize,
+}
+
+impl Counts {
+    pub(super) fn of<'c>(cells: impl IntoIterator<Item = &'c Cell>) -> Self {
+        let mut counts = Self::default();
+        for cell in cells {
+            match cell.verdict {
+                Verdict::Holds(_) => counts.holds += 1,
+                Verdict::Degrades { .. } => counts.degrades += 1,
+                Verdict::Fails { .. } => counts.fails += 1,
+            }
+            counts.must_hold += usize::from(cell.must_hold);
+            counts.broken += usize::from(cell.is_broken());
+        }
+        counts
+    }
+}
+
+impl Cell {
+    /// Returns whether it must hold and does not.
+    pub(super) fn is_broken(&self) -> bool {
+        self.must_hold && !self.verdict.holds()
     }
 }
 
@@ -135,12 +160,12 @@ fn worst_verdict(
             truth: &truth,
             twin: None,
         };
-        if let Some(finding) = common(&evidence) {
+        if let Some(verdict) = common(&evidence) {
             let detail = format!("{}: the common bounds", trial.describe());
-            add(finding.verdict(flagged), detail);
+            add(verdict.flag(flagged), detail);
         }
         for criterion in &trial.criteria {
-            let twin = match criterion.twin() {
+            let twin = match &criterion.twin {
                 Some(input) => Some(work.observe(subject, &trial.settings, input, 0.0)?),
                 None => None,
             };
@@ -148,27 +173,18 @@ fn worst_verdict(
                 twin: twin.as_ref(),
                 ..evidence
             };
-            let remark = remark(criterion, &seen);
+            let remark = criterion.remark(&seen);
             let detail = format!("{}: {criterion}{remark}", trial.describe());
-            add(judge(criterion, &evidence).verdict(flagged), detail);
+            add(criterion.judge(&evidence).flag(flagged), detail);
         }
     }
-    Ok(worst.unwrap_or((Verdict::Holds(Margin::NONE), String::new())))
+    Ok(worst.unwrap_or((Verdict::MET, String::new())))
 }
 
 /// The time from which a trial checks the torque, s.
 fn late_s(trial: &Trial) -> f64 {
-    trial
-        .criteria
-        .iter()
-        .find_map(|criterion| match criterion {
-            Criterion::TorqueWithin { from_s, .. } | Criterion::TorqueQuiet { from_s, .. } => {
-                Some(*from_s)
-            }
-            Criterion::Actuator { from_s, .. } => *from_s,
-            _ => None,
-        })
-        .unwrap_or(0.0)
+    let mut criteria = trial.criteria.iter();
+    criteria.find_map(|c| c.from_s).unwrap_or(0.0)
 }
 
 /// Rank of a verdict, larger if worse: first by kind, then by the used share
@@ -197,33 +213,21 @@ struct Truths(Vec<(Settings, Input, Rc<Vec<TrueEvent>>)>);
 
 impl Truths {
     fn of(&mut self, trial: &Trial) -> Result<Rc<Vec<TrueEvent>>, SettingsError> {
-        let wanted = trial
-            .criteria
-            .iter()
-            .any(|c| matches!(c, Criterion::Events { .. } | Criterion::EventTorques { .. }));
-        let Input::Sampled {
-            shaft,
-            duration_s,
-            step_s,
-        } = &trial.input
-        else {
-            return Ok(Rc::default());
-        };
-        if !wanted {
+        let Trial {
+            settings, input, ..
+        } = trial;
+        let is_wanted = trial.criteria.iter().any(|c| c.basis == Basis::Truth);
+        if !is_wanted || !matches!(input.what, What::Sampled(_)) {
             return Ok(Rc::default());
         }
-        let known = self
-            .0
-            .iter()
-            .find(|(settings, input, _)| *settings == trial.settings && *input == trial.input);
+        let known = self.0.iter().find(|(s, i, _)| s == settings && i == input);
         if let Some((_, _, events)) = known {
             return Ok(events.clone());
         }
-        let motion = shaft.motion();
-        let end_s = Sampling::new(&motion, *duration_s, *step_s).end_s();
-        let events = Rc::new(true_events(&trial.settings.validate()?, &motion, end_s));
-        self.0
-            .push((trial.settings, trial.input.clone(), events.clone()));
+        let motion = input.motion();
+        let end_s = input.sampling(&motion).end_s();
+        let events = Rc::new(true_events(&settings.validate()?, &motion, end_s));
+        self.0.push((*settings, input.clone(), events.clone()));
         Ok(events)
     }
 }
@@ -271,12 +275,8 @@ fn total_work(plan: &Plan) -> f64 {
         for &subject in &plan.subjects {
             for trial in case.trials_of(subject) {
                 total += work_of(&trial.input);
-                total += trial
-                    .criteria
-                    .iter()
-                    .filter_map(Criterion::twin)
-                    .map(work_of)
-                    .sum::<f64>();
+                let twins = trial.criteria.iter().filter_map(|c| c.twin.as_ref());
+                total += twins.map(work_of).sum::<f64>();
             }
         }
     }

@@ -6,7 +6,7 @@ use crepitus_model::{EventKind, Real, Sense};
 use crepitus_plant::Extremes;
 
 /// The most events that are stored; the rest is counted.
-pub(super) const MOST_KEPT: usize = 200_000;
+const MOST_KEPT: usize = 200_000;
 
 /// Observation of a run.
 #[derive(Clone, Debug, Default)]
@@ -73,7 +73,6 @@ pub(super) struct ActuatorObservation {
     pub(super) whole: ActuatorPart,
     /// Observation of the run from the time that the trial sets.
     pub(super) late: ActuatorPart,
-    pub(super) last_v: f64,
 }
 
 /// Observation of the actuator over a part of the run.
@@ -82,9 +81,7 @@ pub(super) struct ActuatorPart {
     pub(super) ticks: f64,
     pub(super) acceleration_squares: f64,
     pub(super) current_squares: f64,
-    /// Largest of the shell's acceleration, of the mass's excursion, of the voltage, of its
-    /// change in a tick, and of the shaft's speed.
-    pub(super) acceleration_m_s2: f64,
+    /// Largest excursion of the mass, voltage, change of it in a tick, and speed of the shaft.
     pub(super) excursion_m: f64,
     pub(super) volts: f64,
     pub(super) volts_a_tick: f64,
@@ -93,6 +90,13 @@ pub(super) struct ActuatorPart {
     /// where it is in phase.
     pub(super) loop_gain: f64,
     pub(super) loop_in_phase: f64,
+}
+
+impl ActuatorPart {
+    /// Root of the mean of squares.
+    pub(super) fn rms(&self, squares: f64) -> f64 {
+        (squares / self.ticks.max(1.0)).sqrt()
+    }
 }
 
 /// Observation of symptoms besides crepitus.
@@ -113,6 +117,54 @@ pub(super) struct SymptomObservation {
 }
 
 impl Observation {
+    /// A run in steps of `step_s` that has not begun.
+    pub(super) fn of_steps(step_s: f64) -> Self {
+        Self {
+            step_s,
+            ..Self::default()
+        }
+    }
+
+    /// A run that was refused.
+    pub(super) fn refused() -> Self {
+        Self {
+            overflow_s: Some(0.0),
+            ..Self::default()
+        }
+    }
+
+    /// Records the torque of a step, at `now_s`, N·m: it is late after `late_step`, and its bound
+    /// is `limit_nm`.
+    pub(super) fn row<F: Real>(
+        &mut self,
+        now_s: f64,
+        torque_nm: f64,
+        limit_nm: f64,
+        late_step: u64,
+    ) {
+        self.steps += 1;
+        if !torque_nm.is_finite() {
+            self.overflow_s.get_or_insert(now_s);
+        }
+        if torque_nm.abs() > limit_nm {
+            self.above_s.get_or_insert(now_s);
+        }
+        if self.steps > late_step {
+            self.late_torque.add(torque_nm);
+        }
+        self.add_torque::<F>(torque_nm);
+        self.peak = self.peak.max(torque_nm.abs() / limit_nm);
+    }
+
+    /// Records an event and the torque just after it, N·m.
+    pub(super) fn event(&mut self, event: TimedEvent, torque_after_nm: f64) {
+        self.tally.add(&event);
+        if self.events.len() < MOST_KEPT {
+            self.events.push(event);
+            self.torques_after_nm.push(torque_after_nm);
+        }
+    }
+
     /// Simulated time, s.
     pub(super) fn duration_s(&self) -> f64 {
         f64::from_whole(self.steps) * self.step_s

@@ -1,17 +1,18 @@
 //! Runs a subject on an input and observes it.
 
 use super::criterion::BOUND_SLACK;
+use super::device_run::DeviceRun;
 use super::energy_audit::EnergyAudit;
 use super::guarded_joint::GuardedJoint;
-use super::input::{Attempt, Input};
-use super::observation::{MOST_KEPT, Observation};
+use super::input::{Input, What};
+use super::observation::Observation;
 use super::parameter_changes::ParameterChanges;
-use super::rendered::RenderedRun;
-use super::shaking_hand::ShakingHand;
-use super::source::{Source, first_omega_rad_s, motion, source};
+use super::source::{Source, source};
 use super::subject::{Rung, Subject};
 use super::without_steps::without_steps;
+use super::{actuator, scene_run, symptom};
 use crate::sampling::{CHUNK_STEPS, Sampling};
+use crate::symptoms::Given;
 use crate::true_events::TimedEvent;
 use crate::watcher::{Cancelled, StudyError};
 use crepitus_model::solver::Solver;
@@ -42,30 +43,55 @@ pub(super) fn observe(
     late_s: f64,
     poll: &mut dyn FnMut(f64) -> Result<(), Cancelled>,
 ) -> Result<Observation, StudyError> {
-    if let Input::Refusals(attempts) = input {
-        return Ok(attempt(subject, attempts));
-    }
-    if let Input::SymptomRefusals(attempts) = input {
-        return Ok(super::symptom::attempt(attempts));
-    }
-    if let Input::Scene(run) = input {
-        return Ok(super::scene_run::observe(subject, run, late_s));
-    }
-    if let Input::Actuator(run) = input {
-        return Ok(super::actuator::observe(subject, run, late_s));
-    }
-    if let Input::ActuatorLoop(linear) = input {
-        return Ok(super::actuator::observe_loop(linear));
-    }
-    if let Input::Symptoms(run) = input {
-        return super::symptom::observe(subject, run, late_s);
-    }
-    let Rung::Ladder(solver) = subject.solver else {
-        return Ok(without_steps(settings, input, late_s)?);
+    let late_step = (late_s / input.step_s).ceil().whole();
+    Ok(match &input.what {
+        What::Refusals(attempts) => {
+            let mut seen = Observation::default();
+            for &(what, parameters, step_s) in attempts {
+                if accepts(subject, parameters, step_s) {
+                    seen.accepted.push(what);
+                }
+            }
+            seen
+        }
+        What::SymptomRefusals(attempts) => {
+            let mut seen = Observation::default();
+            for (what, symptoms) in attempts {
+                if Given::settings_of(symptoms).check(None).is_ok() {
+                    seen.accepted.push(what);
+                }
+            }
+            seen
+        }
+        What::Scene(run) => scene_run::observe(subject, (input, run), late_s),
+        What::Actuator(run) => actuator::observe(subject, (input, run), late_s),
+        What::ActuatorLoop(linear) => actuator::observe_loop(linear),
+        What::Symptoms(run) => symptom::observe(subject, (input, run), late_step)?,
+        _ => match (subject.solver, subject.precision) {
+            (Rung::Reference, _) => without_steps(settings, input, late_step)?,
+            (Rung::Ladder(solver), Precision::F32) => {
+                run::<f32>(subject, solver, settings, input, late_step, poll)?
+            }
+            (Rung::Ladder(solver), Precision::F64) => {
+                run::<f64>(subject, solver, settings, input, late_step, poll)?
+            }
+        },
+    })
+}
+
+/// Returns whether a joint can be built.
+fn accepts(subject: Subject, parameters: Parameters, step_s: f64) -> bool {
+    let settings = Settings {
+        parameters,
+        convention: subject.convention,
+        ..Settings::default()
+    };
+    let (Ok(settings), Rung::Ladder(solver)) = (settings.validate(), subject.solver) else {
+        return false;
     };
     match subject.precision {
-        Precision::F32 => run::<f32>(subject, solver, settings, input, late_s, poll),
-        Precision::F64 => run::<f64>(subject, solver, settings, input, late_s, poll),
+        Precision::F32 => AnyJoint::<f32>::new(&settings, solver, step_s, 1.0).is_ok(),
+        Precision::F64 => AnyJoint::<f64>::new(&settings, solver, step_s, 1.0).is_ok(),
     }
 }
 
@@ -74,15 +100,14 @@ fn run<F: Precise>(
     solver: Solver,
     settings: &Settings,
     input: &Input,
-    late_s: f64,
+    late_step: u64,
     poll: &mut dyn FnMut(f64) -> Result<(), Cancelled>,
 ) -> Result<Observation, StudyError> {
     let settings = settings.validate()?;
-    let (duration_s, step_s) = input.duration_and_step_s().unwrap_or((0.0, 1.0));
-    let motion = motion(input);
-    let sampling = Sampling::new(&motion, duration_s, step_s);
-    match input {
-        Input::ParameterChanges { changes, .. } => {
+    let motion = input.motion();
+    let sampling = input.sampling(&motion);
+    match &input.what {
+        What::ParameterChanges(_, changes) => {
             let run = ParameterChanges {
                 settings,
                 sampling,
@@ -90,64 +115,49 @@ fn run<F: Precise>(
             };
             return Ok(run.observe::<F>(subject)?);
         }
-        Input::ShakingHand { shake, .. } => {
-            let run = ShakingHand {
+        What::ShakingHand(_, shake) => {
+            let run = DeviceRun {
                 settings,
                 sampling,
-                shake: *shake,
+                counts: shake.counts,
+                lost: shake.lost,
+                commits: (0, &[]),
             };
-            return Ok(run.observe::<F>(subject)?);
+            return Ok(run.observe_hand::<F>(subject, shake.delay_ticks)?);
         }
-        Input::Rendered(rendered) => {
-            let run = RenderedRun {
+        What::Rendered(_, rendered) => {
+            let run = DeviceRun {
                 settings,
                 sampling,
-                rendered,
-                late_s,
+                counts: rendered.counts,
+                lost: rendered.lost,
+                commits: (rendered.commit_every, &rendered.commits),
             };
-            return Ok(run.observe::<F>(subject)?);
+            return Ok(run.observe::<F>(subject, late_step)?);
         }
         _ => {}
     }
-    let omega_rad_s = first_omega_rad_s(input, &motion);
-    let p = settings.parameters;
+    let (p, step_s, is_guarded) = (settings.parameters, input.step_s, input.needs_guard());
+    let omega = F::from_f64(input.first_omega_rad_s());
     // The motion of the shaft during missing samples is unknown.
     let audited = subject.convention == Convention::Physical
-        && !input.needs_guard()
+        && !is_guarded
         && (p.damping_nms_per_rad == 0.0 || p.natural_rad_s() * step_s <= AUDITED_RADIANS);
     let observer = StepObserver {
-        source: source::<F>(input, &sampling, &motion)?,
+        source: source::<F>(input, &motion)?,
         sampling,
         parameters: p,
         frozen: subject.convention == Convention::Frozen,
-        audit: audited.then(|| EnergyAudit::new(p, step_s, F::from_f64(omega_rad_s).to_f64())),
-        late_step: (late_s / step_s).ceil(),
-        guard_from_rad_s: input.needs_guard().then(|| F::from_f64(omega_rad_s)),
+        audit: audited.then(|| EnergyAudit::new(p, step_s, omega.to_f64())),
+        late_step,
         poll,
     };
-    let omega = F::from_f64(omega_rad_s);
     let joint = AnyJoint::new(&settings, solver, step_s, omega)?;
-    Ok(observer.run_behind_check_if_needed(joint)?)
-}
-
-/// Tries to build each joint.
-fn attempt(subject: Subject, attempts: &[Attempt]) -> Observation {
-    let accepts = |attempt: &&Attempt| {
-        attempt.settings.validate().is_ok_and(|settings| {
-            let Rung::Ladder(solver) = subject.solver else {
-                return true;
-            };
-            let step_s = attempt.step_s;
-            match subject.precision {
-                Precision::F32 => AnyJoint::<f32>::new(&settings, solver, step_s, 1.0).is_ok(),
-                Precision::F64 => AnyJoint::<f64>::new(&settings, solver, step_s, 1.0).is_ok(),
-            }
-        })
-    };
-    Observation {
-        accepted: attempts.iter().filter(accepts).map(|a| a.what).collect(),
-        ..Observation::default()
-    }
+    Ok(if is_guarded {
+        observer.run(GuardedJoint::new(joint, step_s, omega))?
+    } else {
+        observer.run(joint)?
+    })
 }
 
 /// Observes a joint after every step.
@@ -158,32 +168,18 @@ struct StepObserver<'a, F> {
     frozen: bool,
     audit: Option<EnergyAudit>,
     /// First step of the late torque.
-    late_step: f64,
-    /// Velocity at the start, rad/s, if the input needs the check.
-    guard_from_rad_s: Option<F>,
+    late_step: u64,
     poll: &'a mut dyn FnMut(f64) -> Result<(), Cancelled>,
 }
 
 impl<F: Real> StepObserver<'_, F> {
-    fn run_behind_check_if_needed(self, joint: AnyJoint<F>) -> Result<Observation, Cancelled> {
-        match self.guard_from_rad_s {
-            Some(omega_rad_s) => {
-                let step_s = self.sampling.step_s();
-                self.run(GuardedJoint::new(joint, step_s, omega_rad_s))
-            }
-            None => self.run(joint),
-        }
-    }
-
     fn run<J: StickSlip<F>>(mut self, mut joint: J) -> Result<Observation, Cancelled> {
         let first_torque_nm = joint.torque_nm().to_f64();
         let mut seen = Observation {
-            step_s: self.sampling.step_s(),
             first_torque_nm,
             last_torque_nm: first_torque_nm,
-            ..Observation::default()
+            ..Observation::of_steps(self.sampling.step_s())
         };
-        let late_step = self.late_step.whole();
         let mut chunk = Vec::with_capacity(CHUNK_STEPS);
         let mut unseen = 0_u64;
         loop {
@@ -193,7 +189,7 @@ impl<F: Real> StepObserver<'_, F> {
             }
             for shaft in &chunk {
                 self.step(&mut joint, shaft, &mut seen);
-                if seen.steps > late_step {
+                if seen.steps > self.late_step {
                     seen.late_torque.add(seen.last_torque_nm);
                 }
                 if seen.overflow_s.is_some() {
@@ -286,11 +282,14 @@ impl<F: Real> StepObserver<'_, F> {
         if self.audit.is_none() {
             seen.work_j += 0.5 * (before_nm + torque_nm) * travel_rad;
         }
-        if !finite && seen.overflow_s.is_none() {
-            seen.overflow_s = Some(self.sampling.time_s(seen.steps, 0.0));
-        }
-        if above && seen.above_s.is_none() {
-            seen.above_s = Some(self.sampling.time_s(seen.steps, 0.0));
+        if !finite || above {
+            let now_s = self.sampling.time_s(seen.steps, 0.0);
+            if !finite {
+                seen.overflow_s.get_or_insert(now_s);
+            }
+            if above {
+                seen.above_s.get_or_insert(now_s);
+            }
         }
         if static_torque_nm > 0.0 {
             seen.peak = seen.peak.max(torque_nm.abs() / static_torque_nm);
@@ -314,11 +313,12 @@ fn note<F: Real>(
         && event.theta_dot_rad_s.is_finite()
         && time_s.is_finite()
         && torques.iter().all(|t| t.is_finite());
-    if !finite && seen.overflow_s.is_none() {
-        seen.overflow_s = Some(sampling.time_s(seen.steps, 0.0));
+    if !finite {
+        let now_s = sampling.time_s(seen.steps, 0.0);
+        seen.overflow_s.get_or_insert(now_s);
     }
-    if torques.iter().any(|t| t.abs() > limit_nm) && seen.above_s.is_none() {
-        seen.above_s = Some(time_s);
+    if torques.iter().any(|t| t.abs() > limit_nm) {
+        seen.above_s.get_or_insert(time_s);
     }
     let at_rest = shaft.omega_start_rad_s == F::ZERO
         && shaft.omega_end_rad_s == F::ZERO
@@ -326,11 +326,7 @@ fn note<F: Real>(
     if at_rest && event.kind == EventKind::Break {
         seen.tally.breaks_at_rest += 1;
     }
-    seen.tally.add(&timed);
-    if seen.events.len() < MOST_KEPT {
-        seen.events.push(timed);
-        seen.torques_after_nm.push(after_nm);
-    }
+    seen.event(timed, after_nm);
 }
 
 /// The smallest number with all its digits.

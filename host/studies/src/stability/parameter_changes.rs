@@ -1,19 +1,17 @@
 //! A frozen joint whose parameters change during a run: each commit is one
 //! ramp, and every adjustment is observed.
 
-use super::input::Change;
-use super::locators::with_locator;
 use super::observation::Observation;
 use super::subject::Subject;
 use crate::sampling::Sampling;
 use crate::true_events::TimedEvent;
 use crepitus_model::joint::shaft::Linear;
 use crepitus_model::render::ramp::Ramp;
-use crepitus_model::solver::LocatorVisitor;
 use crepitus_model::solver::locate::Locate;
+use crepitus_model::solver::{LocatorVisitor, with_frozen_locator};
 use crepitus_model::{
-    EventKind, Frozen, Phase, Real, Settings, SettingsError, ShaftStep, StepCoefficients,
-    StickSlip, Validated,
+    EventKind, Frozen, Parameters, Phase, Real, Settings, SettingsError, ShaftStep,
+    StepCoefficients, StickSlip, Validated,
 };
 
 /// The device's slew limit, N·m/s.
@@ -23,18 +21,19 @@ pub(super) const SLEW_NM_PER_S: f64 = 100.0;
 pub(super) struct ParameterChanges<'a> {
     pub(super) settings: Validated<Settings>,
     pub(super) sampling: Sampling<'a>,
-    pub(super) changes: &'a [Change],
+    /// New parameters, and their times, s.
+    pub(super) changes: &'a [(f64, Parameters)],
 }
 
 impl ParameterChanges<'_> {
     pub(super) fn observe<F: Real>(self, subject: Subject) -> Result<Observation, SettingsError> {
-        with_locator::<F, _>(subject, self)
+        with_frozen_locator::<F, _>(subject.solver.of_a_device(), self)
     }
 }
 
 /// The energy stored in a frozen object, J: that of its spring, and in a slip,
 /// where it moves freely, its kinetic energy.
-pub(super) fn stored_j<F: Real, L: Locate<F, Shape = Linear>>(joint: &Frozen<F, L>) -> f64 {
+fn stored_j<F: Real, L: Locate<F, Shape = Linear>>(joint: &Frozen<F, L>) -> f64 {
     let (a, theta) = (joint.coefficients(), joint.theta_rad().to_f64());
     let spring = 0.5 * a.stiffness.to_f64() * theta * theta;
     match joint.phase() {
@@ -53,10 +52,7 @@ impl<F: Real> LocatorVisitor<F> for ParameterChanges<'_> {
         let coefficients = StepCoefficients::<F>::new(&self.settings, step_s)?;
         let mut joint = Frozen::<F, L>::new(coefficients, F::ZERO);
         let mut ramp = Ramp::at(coefficients);
-        let mut seen = Observation {
-            step_s,
-            ..Observation::default()
-        };
+        let mut seen = Observation::of_steps(step_s);
         let mut slip_j = None;
         let mut changes = self.changes.iter().peekable();
         let mut walk = self.sampling.walk_from(0);
@@ -67,9 +63,9 @@ impl<F: Real> LocatorVisitor<F> for ParameterChanges<'_> {
                 return Ok(seen);
             };
             let now_s = self.sampling.time_s(seen.steps, 0.0);
-            while let Some(change) = changes.next_if(|c| c.at_s <= now_s) {
+            while let Some(&(_, parameters)) = changes.next_if(|(at_s, _)| *at_s <= now_s) {
                 let next = Settings {
-                    parameters: change.parameters,
+                    parameters,
                     ..*self.settings
                 };
                 let next = StepCoefficients::new(&next.validate()?, step_s)?;
@@ -116,18 +112,9 @@ fn tick<F: Real, L: Locate<F, Shape = Linear>>(
             &event,
         ));
     });
-    seen.steps += 1;
     let a = joint.coefficients();
     let torque_nm = joint.torque_nm().to_f64();
-    seen.last_torque_nm = torque_nm;
-    let limit_nm = a.static_nm.to_f64();
-    if !torque_nm.is_finite() {
-        seen.overflow_s.get_or_insert(now_s);
-    }
-    if torque_nm.abs() > limit_nm {
-        seen.above_s.get_or_insert(now_s);
-    }
-    seen.peak = seen.peak.max(torque_nm.abs() / limit_nm);
+    seen.row::<F>(now_s, torque_nm, a.static_nm.to_f64(), 0);
     if events == 0 {
         // The shaft's travel in a stick is not limited by the slew rate.
         let wound_nm = match joint.phase() {

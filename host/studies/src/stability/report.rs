@@ -19,19 +19,15 @@ mod page;
 mod picture;
 mod scale;
 
+pub use page::html;
+
 use crate::stability::Matrix;
-use crate::stability::story::Stories;
-
-use crate::{Paper, Picture, StudyText, story};
-
-/// The report as one HTML page, complete in itself.
-pub fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText) -> String {
-    page::html(matrix, stories, text)
-}
+use crate::stability::story::{Stories, figures};
+use crate::{Paper, Picture};
 
 /// The matrix, in brief, and every story as files of their own.
 pub fn pictures(matrix: &Matrix, stories: Option<&Stories>, paper: Paper) -> Vec<Picture> {
-    let figures = stories.map_or_else(Vec::new, |story| story::figures(story, paper));
+    let figures = stories.map_or_else(Vec::new, |stories| figures(stories, paper));
     let mut pictures = vec![picture::picture(matrix)];
     pictures.extend(crepitus_pages::plot::pictures(&figures));
     pictures

@@ -1,6 +1,6 @@
 //! A scene, run by a subject, and by the reference where that solves it, too.
 
-use super::input::SceneRun;
+use super::input::{Input, SceneRun};
 use super::observation::Observation;
 use super::subject::{Rung, Subject};
 use crate::symptoms::event::{SymptomEvent, own};
@@ -16,17 +16,18 @@ use std::path::Path;
 const BESIDE_STEPS: f64 = 1.5;
 
 /// Runs the scene; a scene that is refused, or fails, is an overflow at 0 s.
-pub(super) fn observe(subject: Subject, input: &SceneRun, late_s: f64) -> Observation {
-    let Some(kept) = follow(subject, input) else {
-        return Observation {
-            overflow_s: Some(0.0),
-            ..Observation::default()
-        };
+pub(super) fn observe(
+    subject: Subject,
+    (input, scene): (&Input, &SceneRun),
+    late_s: f64,
+) -> Observation {
+    let run = |subject| follow(&scene.scene(subject, input.duration_s, input.step_s), scene);
+    let Some(kept) = run(subject) else {
+        return Observation::refused();
     };
     let mut seen = Observation {
-        step_s: input.step_s,
         imbalance: kept.missing_share,
-        ..Observation::default()
+        ..Observation::of_steps(input.step_s)
     };
     for &(time_s, torque_nm) in &kept.rows {
         seen.steps += 1;
@@ -50,16 +51,13 @@ pub(super) fn observe(subject: Subject, input: &SceneRun, late_s: f64) -> Observ
         *count += 1;
     }
     let events = own(kept.symptoms);
-    if input.is_compared && subject.solver != Rung::Reference {
-        let exact = follow(
-            Subject {
-                solver: Rung::Reference,
-                precision: Precision::F64,
-                ..subject
-            },
-            input,
-        );
-        if let Some(exact) = exact {
+    if scene.is_compared && subject.solver != Rung::Reference {
+        let reference = Subject {
+            solver: Rung::Reference,
+            precision: Precision::F64,
+            ..subject
+        };
+        if let Some(exact) = run(reference) {
             let truth = own(exact.symptoms);
             let beside_s = BESIDE_STEPS * input.step_s;
             let near = |time_s: f64| {
@@ -90,9 +88,8 @@ struct RunRecords {
     missing_share: Option<f64>,
 }
 
-fn follow(subject: Subject, input: &SceneRun) -> Option<RunRecords> {
-    let text = input.scene(subject);
-    let scene = Scene::parse(Path::new("case.toml"), &text, &Overrides::default()).ok()?;
+fn follow(text: &str, input: &SceneRun) -> Option<RunRecords> {
+    let scene = Scene::parse(Path::new("case.toml"), text, &Overrides::default()).ok()?;
     let place = columns(&scene)
         .iter()
         .position(|column| column.name == input.column)?;

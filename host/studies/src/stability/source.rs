@@ -1,7 +1,7 @@
 //! The steps of an input, generated on demand.
 
 use super::guarded_joint::missing_step;
-use super::input::{Fault, Input, Rendered, Shaft};
+use super::input::{Fault, Input, What};
 use crate::sampling::{CHUNK_STEPS, Sampling, Walk};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::{Real, SettingsError, ShaftStep};
@@ -21,86 +21,41 @@ pub(super) trait Source<F> {
     }
 }
 
-/// The motion of an input; owned by the caller, because sources borrow it.
-pub(super) fn motion(input: &Input) -> Motion {
-    match input {
-        Input::Sampled { shaft, .. }
-        | Input::Encoder { shaft, .. }
-        | Input::Faulty { shaft, .. }
-        | Input::ParameterChanges { shaft, .. }
-        | Input::Rendered(Rendered { shaft, .. }) => shaft.motion(),
-        Input::Repeated { omega_rad_s, .. } => Shaft::Constant(*omega_rad_s).motion(),
-        Input::ShakingHand { shake, .. } => shake.motion(),
-        Input::Symptoms(run) => run.hand.motion(),
-        Input::White { .. }
-        | Input::Hand { .. }
-        | Input::Scene(_)
-        | Input::Actuator(_)
-        | Input::ActuatorLoop(_)
-        | Input::Refusals(_)
-        | Input::SymptomRefusals(_) => Motion::constant(0.0),
-    }
-}
-
-/// Velocity of the shaft as the run starts, rad/s.
-pub(super) fn first_omega_rad_s(input: &Input, motion: &Motion) -> f64 {
-    match input {
-        Input::Hand { omega_rad_s, .. } => *omega_rad_s,
-        _ => motion.at(0.0).omega_rad_s,
-    }
-}
-
-/// The steps of `input`; `motion` is [`motion`] of it.
+/// The steps of `input` along its `motion`, which is owned by the caller because sources borrow it.
 pub(super) fn source<'a, F: Real>(
     input: &Input,
-    sampling: &Sampling<'a>,
     motion: &'a Motion,
 ) -> Result<Box<dyn Source<F> + 'a>, SettingsError> {
-    let steps = sampling.steps();
-    Ok(match *input {
-        Input::Sampled { .. } => Box::new(Cut(sampling.walk_from(0))),
-        Input::Repeated {
-            omega_rad_s,
-            step_s,
-            ..
-        } => Box::new(Same {
+    let sampling = input.sampling(motion);
+    let (steps, step_s) = (sampling.steps(), sampling.step_s());
+    Ok(match input.what {
+        What::Sampled(_) => Box::new(Cut(sampling.walk_from(0))),
+        What::Repeated(omega_rad_s) => Box::new(Same {
             step: straight(omega_rad_s * step_s, omega_rad_s, omega_rad_s),
             left: steps,
         }),
-        Input::Encoder {
-            lines,
-            rate_hz,
-            jitter,
-            lost,
-            first_count,
-            ..
-        } => {
+        What::Encoder(_, readings) => {
             let settings = EncoderSettings {
-                lines,
+                lines: readings.lines,
                 ..EncoderSettings::default()
             };
             let encoder = Encoder::new(&settings);
-            let start = motion.at(0.0);
+            let (start, first) = (motion.at(0.0), readings.first_count);
             let zero = encoder.count(start.phi_rad);
             let omega = F::from_f64(start.omega_rad_s);
             Box::new(Counted {
-                sampling: *sampling,
+                sampling,
                 motion,
-                offset: first_count.wrapping_sub(zero),
+                offset: first.wrapping_sub(zero),
                 encoder,
-                reader: EncoderReader::new(&settings, 1.0 / rate_hz, first_count, omega)?,
-                jitter,
-                lost,
+                reader: EncoderReader::new(&settings, step_s, first, omega)?,
+                jitter: readings.jitter,
+                lost: readings.lost,
                 random: Rng::with_seed(1),
                 n: 0,
             })
         }
-        Input::White {
-            most_rad_s,
-            seed,
-            step_s,
-            ..
-        } => Box::new(White {
+        What::White { most_rad_s, seed } => Box::new(White {
             most_rad_s,
             step_s,
             random: Rng::with_seed(seed),
@@ -108,12 +63,10 @@ pub(super) fn source<'a, F: Real>(
             n: 0,
             steps,
         }),
-        Input::Hand {
+        What::Hand {
             inertia_kg_m2,
             damping_nms_per_rad,
             omega_rad_s,
-            step_s,
-            ..
         } => Box::new(Hand {
             inertia_kg_m2,
             damping_nms_per_rad,
@@ -125,23 +78,15 @@ pub(super) fn source<'a, F: Real>(
             n: 0,
             steps,
         }),
-        Input::Faulty { fault, .. } => Box::new(Faulty {
+        What::Faulty(_, fault) => Box::new(Faulty {
             walk: sampling.walk_from(0),
             fault,
-            step_s: sampling.step_s(),
+            step_s,
             n: 0,
             travel: F::ZERO,
         }),
-        // These have their own runs.
-        Input::ParameterChanges { .. }
-        | Input::ShakingHand { .. }
-        | Input::Rendered(_)
-        | Input::Symptoms(_)
-        | Input::Scene(_)
-        | Input::Actuator(_)
-        | Input::ActuatorLoop(_)
-        | Input::Refusals(_)
-        | Input::SymptomRefusals(_) => Box::new(Same {
+        // The others have their own runs.
+        _ => Box::new(Same {
             step: ShaftStep::default(),
             left: 0,
         }),
@@ -227,14 +172,14 @@ impl<F: Real> Faulty<'_, F> {
     fn wrong(&self, shaft: &ShaftStep<F>) -> Option<ShaftStep<F>> {
         let now_s = f64::from_whole(self.n) * self.step_s;
         match self.fault {
-            Fault::Impossible { every } => self
+            Fault::Impossible(every) => self
                 .n
                 .is_multiple_of(every)
                 .then(|| impossible(shaft, self.n / every)),
-            Fault::Blind { from_s } => (now_s >= from_s).then(missing_step),
-            Fault::Gap { from_s, to_s } => (from_s..to_s).contains(&now_s).then(missing_step),
+            Fault::Blind(from_s) => (now_s >= from_s).then(missing_step),
+            Fault::Gap(from_s, to_s) => (from_s..to_s).contains(&now_s).then(missing_step),
             Fault::Retreating => (shaft.delta_phi_rad < F::ZERO).then(missing_step),
-            Fault::Jumps { every } => self.n.is_multiple_of(every).then(|| ShaftStep {
+            Fault::Jumps(every) => self.n.is_multiple_of(every).then(|| ShaftStep {
                 omega_end_rad_s: shaft.omega_end_rad_s + F::from_f64(20.0),
                 ..*shaft
             }),

@@ -1,7 +1,5 @@
-//! Runs that explain one hard case each, computed with the real model.
-//!
-//! One file a story, with a function of the name of the file; a new one gets a
-//! field of [`Stories`].
+//! Runs that explain one hard case each, computed with the real model, and their pictures: one
+//! file a story.
 
 mod implicit_euler;
 mod parameter_change;
@@ -10,42 +8,54 @@ mod three_solvers;
 mod trace;
 mod turn_back;
 
-pub use implicit_euler::{ImplicitEuler, Method};
-pub use parameter_change::{Change, ParameterChange};
-pub use restick_rules::{RestickRules, Rule};
-pub use three_solvers::{Curve, ThreeSolvers};
-pub use turn_back::{Shaking, Swept, TurnBack};
-
-use crepitus_model::SettingsError;
+use crate::Paper;
+use crate::story::{Story, figure, mark};
+use crepitus_model::{Parameters, SettingsError};
+use crepitus_pages::plot::{Figure, Mark};
 
 /// Points of a line, from left to right.
 pub type Line = Vec<(f64, f64)>;
 
 /// All stories.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stories {
-    /// One joint under three solvers.
-    pub three_solvers: ThreeSolvers,
-    /// Stable, and wrong.
-    pub implicit_euler: ImplicitEuler,
-    /// One knee pass under the paper's two rules.
-    pub restick_rules: RestickRules,
-    /// A stiffer spring, and no energy from nowhere.
-    pub parameter_change: ParameterChange,
-    /// A hand that turns back gets no more than the spring held.
-    pub turn_back: TurnBack,
-}
+pub struct Stories(Vec<Story>);
 
 /// All stories, computed: about a second of work.
 ///
 /// # Errors
 /// None in practice: every story has settings that the model takes.
 pub fn all() -> Result<Stories, SettingsError> {
-    Ok(Stories {
-        three_solvers: three_solvers::three_solvers()?,
-        implicit_euler: implicit_euler::implicit_euler()?,
-        restick_rules: restick_rules::restick_rules()?,
-        parameter_change: parameter_change::parameter_change()?,
-        turn_back: turn_back::turn_back()?,
-    })
+    Ok(Stories(vec![
+        three_solvers::story()?,
+        implicit_euler::story()?,
+        restick_rules::story()?,
+        parameter_change::story()?,
+        turn_back::story()?,
+    ]))
+}
+
+/// The stories as figures of a page, or files.
+pub fn figures(stories: &Stories, paper: Paper) -> Vec<Figure> {
+    let stories = stories.0.iter();
+    stories.map(|story| figure(story, paper)).collect()
+}
+
+/// The device's tick, s.
+const STEP_S: f64 = 5e-5;
+
+/// Ts and Tk of the paper.
+fn levels() -> Vec<Mark> {
+    let p = Parameters::default();
+    vec![
+        mark(p.static_torque_nm, "Ts"),
+        mark(p.kinetic_torque_nm, "Tk"),
+    ]
+}
+
+/// `once`, or `4 times`.
+fn times(count: usize) -> String {
+    match count {
+        1 => "once".to_owned(),
+        n => format!("{n} times"),
+    }
 }

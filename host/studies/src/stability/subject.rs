@@ -4,6 +4,7 @@
 use crepitus_model::Convention;
 use crepitus_model::solver::Solver;
 use crepitus_scene::scene::Precision;
+use std::fmt;
 
 /// A solver: a rung of the ladder, in steps, or the event-driven reference,
 /// without.
@@ -30,28 +31,27 @@ impl Rung {
         }
     }
 
-    /// Reason why it has no meaning under a convention, or `None`.
-    pub fn refusal(self, convention: Convention) -> Option<&'static str> {
+    /// The solver in steps.
+    fn stepped(self) -> Option<Solver> {
         match self {
-            Self::Ladder(solver) => solver.refusal(convention),
+            Self::Ladder(solver) => Some(solver),
             Self::Reference => None,
         }
     }
 
-    /// Returns whether it needs the prescribed motion itself.
-    pub fn needs_exact_motion(self) -> bool {
-        match self {
-            Self::Ladder(solver) => solver.needs_exact_motion(),
-            Self::Reference => false,
-        }
+    /// The rung of a frozen joint that a device changes while it runs: the reference has none.
+    pub(super) fn of_a_device(self) -> Solver {
+        self.stepped().unwrap_or(Solver::Exact)
     }
 
-    /// The precisions that it computes in.
-    fn precisions(self) -> &'static [Precision] {
-        match self.single_refusal() {
-            None => &Precision::ALL,
-            Some(_) => &[Precision::F64],
-        }
+    /// Reason why it has no meaning under a convention, or `None`.
+    pub fn refusal(self, convention: Convention) -> Option<&'static str> {
+        self.stepped()?.refusal(convention)
+    }
+
+    /// Returns whether it needs the prescribed motion itself.
+    pub fn needs_exact_motion(self) -> bool {
+        self.stepped().is_some_and(Solver::needs_exact_motion)
     }
 
     /// Reason why it has no meaning in f32, or `None`.
@@ -83,7 +83,10 @@ impl Subject {
                 if solver.refusal(convention).is_some() {
                     continue;
                 }
-                all.extend(solver.precisions().iter().map(|&precision| Self {
+                let in_f32 = solver.single_refusal().is_none();
+                let precisions = Precision::ALL.into_iter();
+                let precisions = precisions.filter(|p| in_f32 || *p == Precision::F64);
+                all.extend(precisions.map(|precision| Self {
                     solver,
                     convention,
                     precision,
@@ -98,5 +101,17 @@ impl Subject {
         self.convention == Convention::Frozen
             && self.solver == Rung::Ladder(Solver::ExactEvents)
             && self.precision == Precision::F32
+    }
+}
+
+/// `exact-events, frozen, f32`.
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names = [
+            self.solver.name(),
+            self.convention.name(),
+            self.precision.name(),
+        ];
+        f.write_str(&names.join(", "))
     }
 }

@@ -3,43 +3,42 @@
 
 mod energy;
 
-use super::input::{RefusedSymptoms, SymptomRun};
+use super::input::{Input, SymptomRun};
 use super::observation::{Observation, SymptomObservation};
 use super::parameter_changes::SLEW_NM_PER_S;
 use super::subject::{Rung, Subject};
+use super::view::View;
 use crate::sampling::Sampling;
 use crate::symptoms::errors::{Errors, Truth};
 use crate::symptoms::event::{SymptomEvent, own};
 use crate::symptoms::truth::{true_events, true_torques};
 use crate::symptoms::{Given, follow};
 use crate::watcher::StudyError;
-use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::render::effects::symptom::Change;
 use crepitus_model::render::effects::{EffectSettings, EffectSpec, SwitchedEffects, Timing};
 use crepitus_model::render::input_check::{InputCheck, InputLimits};
-use crepitus_model::render::position::{Position, Sensing};
+use crepitus_model::render::position::Position;
 use crepitus_model::render::{Addition, Check, ShaftEstimate, Shown};
-use crepitus_model::{Real, Sample, SettingsError, ShaftStep};
-use crepitus_plant::encoder::Encoder;
+use crepitus_model::{Real, Sample, SettingsError};
 use crepitus_scene::scene::Precision;
 use energy::Energy;
 
 /// The torque is compared with the reference's at most so often.
 const MOST_COMPARED: u64 = 50_000;
 
-/// Runs symptoms on an input; the late torque is that after `late_s`.
+/// Runs symptoms; the late torque is that after `late_step`.
 pub(super) fn observe(
     subject: Subject,
-    run: &SymptomRun,
-    late_s: f64,
+    (input, run): (&Input, &SymptomRun),
+    late_step: u64,
 ) -> Result<Observation, StudyError> {
     let motion = run.hand.motion();
-    let sampling = Sampling::new(&motion, run.duration_s, run.step_s);
+    let sampling = input.sampling(&motion);
     let here = Here {
         run,
         sampling,
-        late_step: (late_s / run.step_s).ceil().whole(),
+        late_step,
     };
     if subject.solver == Rung::Reference {
         return here.by_reference();
@@ -63,16 +62,6 @@ pub(super) fn observe(
     Ok(seen)
 }
 
-/// Observes which of the attempts are accepted.
-pub(super) fn attempt(attempts: &[RefusedSymptoms]) -> Observation {
-    let accepts =
-        |attempt: &&RefusedSymptoms| Given::settings_of(&attempt.symptoms).check(None).is_ok();
-    Observation {
-        accepted: attempts.iter().filter(accepts).map(|a| a.what).collect(),
-        ..Observation::default()
-    }
-}
-
 struct Here<'a> {
     run: &'a SymptomRun,
     sampling: Sampling<'a>,
@@ -82,11 +71,11 @@ struct Here<'a> {
 
 impl Here<'_> {
     fn by_reference(&self) -> Result<Observation, StudyError> {
-        let mut seen = self.begun();
+        let (sampling, motion) = (&self.sampling, self.run.hand.motion());
+        let mut seen = Observation::of_steps(sampling.step_s());
         let Some(given) = self.run.symptoms.first() else {
             return Ok(seen);
         };
-        let (sampling, motion) = (&self.sampling, self.run.hand.motion());
         let times_s = (1..=sampling.steps()).map(|n| sampling.time_s(n, 0.0));
         for torque_nm in true_torques(given, &motion, times_s)? {
             self.row::<f64>(&mut seen, torque_nm);
@@ -96,58 +85,40 @@ impl Here<'_> {
         Ok(seen)
     }
 
-    fn begun(&self) -> Observation {
-        Observation {
-            step_s: self.run.step_s,
-            ..Observation::default()
-        }
-    }
-
     /// Records the torque of a tick.
     fn row<F: Real>(&self, seen: &mut Observation, torque_nm: f64) {
         let now_s = self.sampling.time_s(seen.steps, 0.0);
-        seen.steps += 1;
-        if !torque_nm.is_finite() {
-            seen.overflow_s.get_or_insert(now_s);
-        }
-        if seen.steps > self.late_step {
-            seen.late_torque.add(torque_nm);
-        }
-        seen.add_torque::<F>(torque_nm);
+        seen.row::<F>(now_s, torque_nm, f64::INFINITY, self.late_step);
     }
 
     /// Runs the device in steps; returns the observation with the torque at the end of each step, N·m.
     fn stepped<F: Real>(&self) -> Result<(Observation, Vec<f64>), SettingsError> {
-        let (run, step_s) = (self.run, self.run.step_s);
-        let mut view = View::<F>::new(run, &self.sampling)?;
-        let mut device = Device::<F>::new(run, view.sensing, &view.place)?;
-        let mut seen = self.begun();
+        let (run, step_s) = (self.run, self.sampling.step_s());
+        let mut view = View::<F>::new(&self.sampling, run.counts)?;
+        let mut device = Device::<F>::new(run, step_s, &view)?;
+        let mut seen = Observation::of_steps(step_s);
         let mut torques_nm = Vec::new();
-        let mut energy = Energy::new(device.now.stiffness_nm_per_rad(None), run);
+        let stiffness = device.now.stiffness_nm_per_rad(None);
+        let mut energy = Energy::new(stiffness, (run.delay_ticks, run.delay_varies), step_s);
         let mut events = Vec::new();
-        for n in 1..=self.sampling.steps() {
-            let from_s = self.sampling.time_s(n - 1, 0.0);
+        for n in 0..self.sampling.steps() {
+            let from_s = self.sampling.time_s(n, 0.0);
             for (at_s, symptoms) in &run.commits {
                 if (from_s..from_s + step_s).contains(at_s) {
                     device.commit(Given::settings_of(symptoms))?;
                 }
             }
-            let is_lost = run.lost.takes(n, step_s);
-            let (sample, travel_rad) = view.sample(is_lost);
-            let torque_nm = device.tick(sample, view.place, |change| {
+            let (sample, travel_rad) = view.sample(false);
+            let torque_nm = device.tick(sample, view.place(), |change| {
                 let fraction = change.fraction.to_f64();
-                let missed = f64::from_whole(view.missed);
                 events.push(SymptomEvent {
-                    time_s: self
-                        .sampling
-                        .time_s(n - 1, fraction * (missed + 1.0) - missed),
+                    time_s: self.sampling.time_s(n, fraction),
                     word: change.word,
                     omega_rad_s: omega_rad_s(&sample, fraction),
                     before_nm: change.before_nm.to_f64(),
                     after_nm: change.after_nm.to_f64(),
                 });
             });
-            view.missed = if is_lost { view.missed + 1 } else { 0 };
             energy.tick(travel_rad, torque_nm);
             self.row::<F>(&mut seen, torque_nm);
             torques_nm.push(torque_nm);
@@ -173,21 +144,21 @@ struct Device<F: Real> {
 }
 
 impl<F: Real> Device<F> {
-    fn new(run: &SymptomRun, sensing: Sensing, place: &Position<F>) -> Result<Self, SettingsError> {
+    fn new(run: &SymptomRun, step_s: f64, view: &View<'_, F>) -> Result<Self, SettingsError> {
         let timing = Timing {
             delay_ticks: MOST_DELAY_TICKS,
-            sensing,
-            ..follow::timing(run.step_s)
+            sensing: view.sensing(),
+            ..follow::timing(step_s)
         };
-        let step_s = F::from_f64(run.step_s);
+        let limits = InputLimits::device(step_s);
         let mut device = Self {
-            effects: SwitchedEffects::new(slew_nm(run.step_s), &timing),
-            check: InputCheck::new(&InputLimits::device(run.step_s), step_s, F::ZERO),
+            effects: SwitchedEffects::new(slew_nm(step_s), &timing),
+            check: InputCheck::new(&limits, F::from_f64(step_s), F::ZERO),
             now: EffectSettings::default(),
             timing,
         };
         device.commit(Given::settings_of(&run.symptoms))?;
-        device.effects.rest(place);
+        device.effects.rest(&view.place());
         Ok(device)
     }
 
@@ -225,76 +196,6 @@ impl<F: Real> Device<F> {
 
 fn slew_nm<F: Real>(step_s: f64) -> F {
     F::from_f64(SLEW_NM_PER_S * step_s)
-}
-
-/// The device's view of the joint: its true motion, or the encoder's counts.
-struct View<'a, F> {
-    walk: crate::sampling::Walk<'a>,
-    chunk: Vec<(f64, ShaftStep<F>)>,
-    encoder: Encoder,
-    reader: EncoderReader<F>,
-    counts: bool,
-    sensing: Sensing,
-    place: Position<F>,
-    angle_rad: f64,
-    /// Samples lost since the last one, and their travel, rad.
-    missed: u64,
-    unseen: F,
-}
-
-impl<'a, F: Real> View<'a, F> {
-    fn new(run: &SymptomRun, sampling: &Sampling<'a>) -> Result<Self, SettingsError> {
-        let settings = EncoderSettings::default();
-        let encoder = Encoder::new(&settings);
-        let walk = sampling.walk_from(0);
-        let (angle_rad, omega_rad_s) = walk.now();
-        let first = encoder.count(angle_rad);
-        let (sensing, place) = if run.counts {
-            (Sensing::of_encoder(&settings), Position::at(first))
-        } else {
-            (Sensing::IDEAL, Sensing::IDEAL.position(angle_rad))
-        };
-        Ok(Self {
-            walk,
-            chunk: Vec::new(),
-            reader: EncoderReader::new(&settings, run.step_s, first, F::from_f64(omega_rad_s))?,
-            encoder,
-            counts: run.counts,
-            sensing,
-            place,
-            angle_rad,
-            missed: 0,
-            unseen: F::ZERO,
-        })
-    }
-
-    /// The next sample, if it is not lost, and the true travel, rad.
-    fn sample(&mut self, is_lost: bool) -> (Sample<F>, f64) {
-        self.walk.fill_with_angles(&mut self.chunk, 1);
-        let Some((angle_rad, shaft)) = self.chunk.first() else {
-            return (Sample::Lost, 0.0);
-        };
-        let travel_rad = angle_rad - self.angle_rad;
-        self.angle_rad = *angle_rad;
-        self.unseen += shaft.delta_phi_rad;
-        if is_lost {
-            self.reader.miss();
-            return (Sample::Lost, travel_rad);
-        }
-        let delta_phi_rad = std::mem::take(&mut self.unseen);
-        let step = if self.counts {
-            let count = self.encoder.count(*angle_rad);
-            self.place = Position::at(count);
-            self.reader.read(count)
-        } else {
-            self.place = Sensing::IDEAL.position(*angle_rad);
-            ShaftStep {
-                delta_phi_rad,
-                ..*shaft
-            }
-        };
-        (Sample::Taken(step), travel_rad)
-    }
 }
 
 /// Velocity of the joint at a share of a tick, as it is seen, rad/s.

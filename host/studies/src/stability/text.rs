@@ -39,6 +39,22 @@ impl fmt::Display for Time {
     }
 }
 
+/// Knots: the time of each, and the value just before and just after it, or one if they are equal.
+pub(crate) struct Knots<'a>(pub(crate) &'a [(f64, f64, f64)]);
+
+impl fmt::Display for Knots<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, &(time_s, left, right)) in self.0.iter().enumerate() {
+            let comma = if i == 0 { "" } else { "," };
+            write!(f, "{comma} {}: {}", Plain(time_s), Plain(left))?;
+            if left != right {
+                write!(f, "|{}", Plain(right))?;
+            }
+        }
+        Ok(())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -59,6 +59,48 @@ pub enum Failure {
 }
 
 impl Verdict {
+    /// A criterion without a number that is met.
+    pub(super) const MET: Self = Self::Holds(Margin::NONE);
+
+    /// Compares a number with its limit; NaN is above every limit.
+    pub(super) fn of(measured: f64, limit: f64, unit: &'static str) -> Self {
+        let margin = Margin {
+            measured,
+            limit,
+            unit,
+        };
+        if measured <= limit {
+            Self::Holds(margin)
+        } else {
+            Self::Degrades {
+                margin,
+                flagged: false,
+            }
+        }
+    }
+
+    /// A criterion without a number that is not met.
+    pub(super) fn broken(what: &'static str) -> Self {
+        Self::fails(Failure::Broken(what), None)
+    }
+
+    /// The motion is not the joint's.
+    pub(super) fn fails(what: Failure, at_s: Option<f64>) -> Self {
+        Self::Fails {
+            what,
+            at_s,
+            flagged: false,
+        }
+    }
+
+    /// Sets whether the run itself gives a warning.
+    pub(super) fn flag(mut self, by_itself: bool) -> Self {
+        if let Self::Degrades { flagged, .. } | Self::Fails { flagged, .. } = &mut self {
+            *flagged = by_itself;
+        }
+        self
+    }
+
     /// Returns whether every criterion is met.
     pub fn holds(&self) -> bool {
         matches!(self, Self::Holds(_))

@@ -55,7 +55,8 @@ impl Outcome for StabilityOutcome<'_> {
     }
 
     fn tables(&self) -> Vec<(&'static str, String)> {
-        vec![("cases.csv", cases_table(&self.matrix.cells()).to_csv())]
+        let cells: Vec<_> = self.matrix.cells().collect();
+        vec![("cases.csv", cases_table(&cells).to_csv())]
     }
 
     fn answer(&self) -> String {
@@ -74,15 +75,10 @@ impl Outcome for StabilityOutcome<'_> {
     }
 
     fn broken(&self) -> Option<String> {
-        let broken = self.matrix.broken().map(|(case, cell)| {
-            format!(
-                "{} {} on {}",
-                case.id,
-                case.name,
-                table::subject(cell.subject)
-            )
-        });
-        let broken: Vec<String> = broken.collect();
+        let mut broken = Vec::new();
+        for (case, cell) in self.matrix.broken() {
+            broken.push(format!("{} {} on {}", case.id, case.name, cell.subject));
+        }
         match broken.as_slice() {
             [] => None,
             [only] => Some(format!("{only} must hold and does not")),

@@ -1,6 +1,6 @@
 //! A motion of the hand, in degrees of the joint.
 
-use crate::stability::text::{Plain, Time};
+use crate::stability::text::{Knots, Plain, Time};
 use crepitus_plant::Motion;
 use crepitus_plant::motion::{Strokes, VelocityKnot};
 use crepitus_plant::piece::{Curve, Piece};
@@ -189,19 +189,8 @@ impl fmt::Display for Hand {
                 write!(f, "from {}° at {} deg/s", Plain(*from_deg), Plain(*deg_s))
             }
             Self::Knots { from_deg, knots } => {
-                write!(
-                    f,
-                    "from {}°, Ω linear between (t s: deg/s)",
-                    Plain(*from_deg)
-                )?;
-                for (i, &(time_s, left, right)) in knots.iter().enumerate() {
-                    let comma = if i == 0 { "" } else { "," };
-                    write!(f, "{comma} {}: {}", Plain(time_s), Plain(left))?;
-                    if left != right {
-                        write!(f, "|{}", Plain(right))?;
-                    }
-                }
-                Ok(())
+                let (from, knots) = (Plain(*from_deg), Knots(knots));
+                write!(f, "from {from}°, Ω linear between (t s: deg/s){knots}")
             }
             Self::Sine {
                 centre_deg,

@@ -15,7 +15,7 @@ use crepitus_scene::scene::Precision;
 use crepitus_studies::stability::report::{html, pictures};
 use crepitus_studies::stability::story as told;
 use crepitus_studies::stability::{Failure, Matrix, Verdict};
-use crepitus_studies::{Column, Paper, Section, StudyText, story};
+use crepitus_studies::{Column, Paper, Section, StudyText};
 
 fn text(title: &str) -> StudyText {
     StudyText {
@@ -201,7 +201,7 @@ fn pictures_are_documents() {
 
 #[test]
 fn every_story_has_its_own_name_and_says_what_one_sees() {
-    let figures = story::figures(&told::all().expect("computed"), Paper::Screen);
+    let figures = told::figures(&told::all().expect("computed"), Paper::Screen);
     let names: Vec<_> = figures.iter().map(|figure| figure.name).collect();
     assert_eq!(
         names,

@@ -20,7 +20,7 @@ mod symptoms;
 use crate::accuracy::scenes::StudyScene;
 use crate::sampling::Sampling;
 use crate::stability::catalogue::WANDER;
-use crate::stability::input::{Input as Hard, Shaft};
+use crate::stability::input::{Input as Hard, Shaft, What};
 use crate::stability::replay::steps;
 use crepitus_ladder::exchange::Input;
 use crepitus_ladder::{Plan, Subject};
@@ -159,22 +159,13 @@ fn stretch(scene: &StudyScene, length: u32) -> Motion {
 /// Motions for the worst step; the first covers all phases.
 fn motions(length: u32) -> Result<Vec<(&'static str, Motion)>, SettingsError> {
     let duration_s = |seconds: f64| seconds.min(f64::from(length) * TICK_S);
-    let sampled = |shaft, seconds| Hard::Sampled {
-        shaft,
-        duration_s: duration_s(seconds),
-        step_s: TICK_S,
-    };
-    let shaking = Shaft::Sine {
-        amplitude_rad: 1.4e-3,
-        frequency_hz: 50.0,
-        phase_deg: 0.0,
-    };
-    let white = Hard::White {
+    let sampled = |shaft, seconds| Hard::sampled(shaft, duration_s(seconds), TICK_S);
+    let shaking = Shaft::Sine(1.4e-3, 50.0, 0.0);
+    let white = What::White {
         most_rad_s: WHITE_RAD_S,
         seed: 1,
-        duration_s: duration_s(0.2),
-        step_s: TICK_S,
     };
+    let white = Hard::new(white, duration_s(0.2), TICK_S);
     Ok(vec![
         ("wander", steps(&sampled(Shaft::Knots(WANDER), 1.05))?),
         ("shaking hand", steps(&sampled(shaking, 0.2))?),

@@ -1,13 +1,17 @@
 //! A joint in a device: invalid samples, parameters that change during a run,
 //! and a hand that turns back.
 
-use super::tools::{TICK_S, changed, faulty, joint, paper_joint, trial};
-use crate::stability::case::{Case, located};
-use crate::stability::criterion::{Counted, Criterion, Limits};
-use crate::stability::input::{Fault, Input, Lost, Shaft, Shake};
+use super::tools::{CASE, FROZEN, TICK_S, changed, cycle_hz, faulty, knee, shaking, sine};
+use crate::stability::case::Case;
+use crate::stability::criteria::{
+    BREAKS, count, cycle_rate, energy_rise, first_break_after, returned, silent_after, slew,
+    torque, torque_step,
+};
+use crate::stability::criterion::Limits;
+use crate::stability::input::{Fault, Lost, Shaft, Shake};
+use crepitus_model::Parameters;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::parameters::Tabled;
-use crepitus_model::{Convention, Parameters};
 use crepitus_scene::preset::joints;
 
 /// The cases of this theme.
@@ -20,34 +24,19 @@ pub(super) const CASES: &[Case] = &[
                is counted, the torque is held for 20 ticks and then ramped down at 100 N·m/s, and up to three \
                missing ticks are caught up afterwards, so that the cycles stay on time.",
         source: "model/src/render/input_check.rs: the device's limits are 50 rad/s and 10 rad/s in a tick",
-        long: false,
-        must: located,
-        trials: |subject| {
-            let settings = paper_joint(subject.convention);
-            let p = &settings.parameters;
-            let every = |every| faulty(Shaft::Constant(1.0), Fault::Impossible { every }, 2.0);
-            let rate = || Criterion::CycleRate {
-                hz: super::tools::cycle_hz(p, 1.0),
-                // A tick or two over the whole run.
-                within: Limits::both(5e-5),
-            };
-            let blind = faulty(Shaft::Constant(1.0), Fault::Blind { from_s: 1.0 }, 1.5);
-            let silence = [
-                // 20 ticks, and at most 0.4 N·m at 5 mN·m a tick.
-                Criterion::TorqueWithin {
-                    from_s: 1.0 + 101.0 * TICK_S,
-                    low_nm: 0.0,
-                    high_nm: 0.0,
-                    slack_nm: 0.0,
-                },
-                Criterion::SilentAfter { time_s: 1.0 },
-            ];
+        trials: |_| {
+            let run = |fault, duration_s| faulty(Shaft::Constant(1.0), fault, duration_s);
+            // A tick or two over the whole run.
+            let rate = || [cycle_rate(cycle_hz(&Parameters::default(), 1.0), 5e-5)];
+            // 20 ticks, and at most 0.4 N·m at 5 mN·m a tick.
+            let silent = torque(1.0 + 101.0 * TICK_S, 0.0, 0.0, 0.0);
             vec![
-                trial(settings, every(7), [rate()]),
-                trial(settings, every(2), [rate()]),
-                trial(settings, blind, silence),
+                run(Fault::Impossible(7), 2.0).meets(rate()),
+                run(Fault::Impossible(2), 2.0).meets(rate()),
+                run(Fault::Blind(1.0), 1.5).meets([silent, silent_after(1.0)]),
             ]
         },
+        ..CASE
     },
     Case {
         id: "H28",
@@ -57,37 +46,18 @@ pub(super) const CASES: &[Case] = &[
                stick that begins with the torque then shown. Later events are those of a joint \
                that was started there.",
         source: "model/src/render/held.rs: no torque step above Ts − (2Tk − Ts), a valid phase at the end",
-        long: false,
-        must: located,
-        trials: |subject| {
-            let settings = paper_joint(subject.convention);
-            let fault = Fault::Gap {
-                from_s: 0.5,
-                to_s: 0.6,
-            };
-            let p = &settings.parameters;
-            let most_nm = p.static_torque_nm - p.restart_torque_nm();
+        trials: |_| {
+            let p = Parameters::default();
             // 31.8 a second for 1.9 s, and one more or less at the gap.
-            let breaks = Criterion::Count {
-                what: Counted::Breaks,
-                least: 60,
-                most: 62,
-            };
+            let breaks = count(BREAKS, 60, 62);
             // Restarted at 0.6 s with an unloaded spring: 0.4 N·m later it breaks.
-            let first = Criterion::FirstBreakAfter {
-                from_s: 0.500_1,
-                at_s: 0.6 + p.static_torque_nm / p.stiffness_nm_per_rad,
-                within_s: Limits {
-                    f64: 1e-9,
-                    f32: 1e-6,
-                },
-            };
-            vec![trial(
-                settings,
-                faulty(Shaft::Constant(1.0), fault, 2.0),
-                [Criterion::TorqueStep { most_nm }, breaks, first],
-            )]
+            let at_s = 0.6 + p.static_torque_nm / p.stiffness_nm_per_rad;
+            let first = first_break_after(0.500_1, at_s, Limits(1e-9, 1e-6));
+            let step = torque_step(p.static_torque_nm - p.restart_torque_nm());
+            let input = faulty(Shaft::Constant(1.0), Fault::Gap(0.5, 0.6), 2.0);
+            vec![input.meets([step, breaks, first])]
         },
+        ..CASE
     },
     Case {
         id: "H29",
@@ -98,69 +68,35 @@ pub(super) const CASES: &[Case] = &[
                energy never rises, and |T| is at most the static limit in force at every tick. Frozen only: it is \
                what the device renders and changes while armed.",
         source: "docs/stability.md, Energy from nowhere",
-        long: false,
-        must: located,
-        trials: |subject| {
-            if subject.convention != Convention::Frozen {
-                return Vec::new();
-            }
+        trials: |_| {
             let paper = Parameters::default();
-            let soft = Parameters {
-                stiffness_nm_per_rad: 10.0,
-                ..paper
-            };
-            let weak = Parameters {
-                kinetic_torque_nm: 0.05,
-                static_torque_nm: 0.1,
-                ..paper
-            };
+            let soft = Parameters::of([0.01, 10.0, 0.0, 0.2, 0.4]);
+            let weak = Parameters::of([0.01, 400.0, 0.0, 0.05, 0.1]);
             let presets: Vec<_> = joints().iter().map(|joint| joint.parameters).collect();
             let tour: Vec<_> = (0..60_u8)
-                .map(|n| {
-                    let next = presets.get(usize::from(n) % presets.len());
-                    (0.05 + 0.0317 * f64::from(n), next.copied().unwrap_or(paper))
-                })
+                .zip(presets.into_iter().cycle())
+                .map(|(n, next)| (0.05 + 0.0317 * f64::from(n), next))
                 .collect();
+            let weak_twice = [(9.5e-4, weak), (0.1, paper), (0.118, weak)];
             let one = Shaft::Constant(1.0);
-            let knee = super::tools::knee(0.5);
-            let cases = [
+            [
                 (soft, changed(one.clone(), 0.5, &[(0.039, paper)])),
                 (
                     soft,
                     changed(one.clone(), 0.5, &[(0.06, paper), (0.2, soft)]),
                 ),
-                (
-                    paper,
-                    changed(one, 0.5, &[(9.5e-4, weak), (0.1, paper), (0.118, weak)]),
-                ),
-                (paper, changed(knee, 2.0, &tour)),
-            ];
-            let limits = Limits {
-                f64: 1e-12,
-                f32: 1e-5,
-            };
-            // Torques of 1 N·m are rounded against 5 mN·m a tick.
-            let beyond = Limits {
-                f64: 2e-6,
-                f32: 1e-3,
-            };
-            cases
-                .map(|(first, input)| {
-                    let settings = crepitus_model::Settings {
-                        parameters: first,
-                        ..paper_joint(subject.convention)
-                    };
-                    trial(
-                        settings,
-                        input,
-                        [
-                            Criterion::EnergyRise { most: limits },
-                            Criterion::Slew { beyond },
-                        ],
-                    )
-                })
-                .to_vec()
+                (paper, changed(one, 0.5, &weak_twice)),
+                (paper, changed(knee(0.5), 2.0, &tour)),
+            ]
+            .map(|(first, input)| {
+                let rise = energy_rise(Limits(1e-12, 1e-5));
+                // Torques of 1 N·m are rounded against 5 mN·m a tick.
+                let trial = input.meets([rise, slew(Limits(2e-6, 1e-3))]);
+                trial.with(first.values())
+            })
+            .into()
         },
+        ..FROZEN
     },
     Case {
         id: "H37",
@@ -171,52 +107,34 @@ pub(super) const CASES: &[Case] = &[
                the spring stored and sampling generates, also with the torque one or two ticks late. An encoder's \
                staircase holds half a count more at the limit, Ts·Δ/2.",
         source: "docs/stability.md, A hand that turns back; measured with an energy observer",
-        long: false,
-        must: located,
-        trials: |subject| {
-            if subject.convention != Convention::Frozen {
-                return Vec::new();
-            }
+        trials: |_| {
+            const SHAKES: [(f64, f64); 5] = [
+                (0.9, 50.0),
+                (0.99, 7.0),
+                (1.01, 50.0),
+                (1.2, 90.0),
+                (5.0, 20.0),
+            ];
+            let count_rad = EncoderSettings::default().rad_per_count();
             let mut trials = Vec::new();
-            for preset in joints() {
-                let p = preset.parameters;
+            for p in joints().iter().map(|joint| joint.parameters) {
                 let stroke_rad = p.static_torque_nm / p.stiffness_nm_per_rad;
-                let count_rad = EncoderSettings::default().rad_per_count();
-                for (share, frequency_hz) in [
-                    (0.9, 50.0),
-                    (0.99, 7.0),
-                    (1.01, 50.0),
-                    (1.2, 90.0),
-                    (5.0, 20.0),
-                ] {
-                    for delay_ticks in 0..=2 {
-                        for counts in [false, true] {
-                            let shake = Shake {
-                                amplitude_rad: share * stroke_rad,
-                                frequency_hz,
-                                delay_ticks,
-                                counts,
-                                lost: Lost::NONE,
-                            };
-                            let staircase = if counts { count_rad / stroke_rad } else { 0.0 };
-                            let input = Input::ShakingHand {
-                                shake,
-                                duration_s: 2.0,
-                                step_s: TICK_S,
-                            };
-                            let values = p.values();
-                            trials.push(trial(
-                                joint(subject.convention, values),
-                                input,
-                                [Criterion::Returned {
-                                    most: 1.0 + staircase,
-                                }],
-                            ));
-                        }
+                for (share, frequency_hz) in SHAKES {
+                    for (delay_ticks, counts) in (0..=2).flat_map(|d| [(d, false), (d, true)]) {
+                        let shake = Shake {
+                            delay_ticks,
+                            counts,
+                            lost: Lost::NONE,
+                        };
+                        let staircase = if counts { count_rad / stroke_rad } else { 0.0 };
+                        let input = shaking(sine(share * stroke_rad, frequency_hz), shake);
+                        let trial = input.meets([returned(1.0 + staircase)]);
+                        trials.push(trial.with(p.values()));
                     }
                 }
             }
             trials
         },
+        ..FROZEN
     },
 ];

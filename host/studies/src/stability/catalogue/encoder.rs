@@ -1,50 +1,43 @@
 //! A shaft measured by an encoder, and one held by a hand.
 
-use super::tools::{cycle_hz, most_hz, paper_joint, trial};
+use super::tools::{CASE, ENCODER, cycle_hz, encoder, is_frozen, most_hz};
 use crate::stability::case::{Case, Trial, located};
-use crate::stability::criterion::{Criterion, Limits};
-use crate::stability::input::{Input, Shaft};
+use crate::stability::criteria::{
+    cycle_rate, events_per_second, interval_variation, same_as, swing_ratio,
+};
+use crate::stability::input::{Input, Readings, Shaft, What};
 use crate::stability::subject::Subject;
 use crepitus_model::{Convention, Parameters};
 
 /// Counts of 10⁴ turns of the joint: 86 motor turns each of 4 · 512.
 const TEN_THOUSAND_TURNS: i32 = 10_000 * 86 * 2048;
 
-/// `frozen` has to hold behind an encoder, the others are shown.
-fn frozen_located(subject: Subject) -> bool {
-    located(subject) && subject.convention == Convention::Frozen
-}
-
-/// Criteria for a joint behind an encoder at a steady speed.
-fn behind_encoder(subject: Subject, omega_rad_s: f64, input: Input) -> Trial {
-    let settings = paper_joint(subject.convention);
-    let p = &settings.parameters;
-    let mut criteria = vec![
-        Criterion::CycleRate {
-            hz: cycle_hz(p, omega_rad_s),
-            within: Limits::both(1e-2),
-        },
-        Criterion::IntervalVariation { most: 3e-2 },
-    ];
-    if subject.convention != Convention::Frozen {
-        // At most 2·f_max cycles of two events each.
-        criteria.push(Criterion::EventsPerSecond {
-            most: 4.0 * most_hz(p),
-        });
-    }
-    Trial {
-        settings,
-        input,
-        criteria,
-    }
-}
-
-const TEN_THOUSAND: &[(f64, f64, f64)] = &[
+const TEN_THOUSAND: Shaft = Shaft::Knots(&[
     (0.0, 1000.0, 1000.0),
     (62.85, 1000.0, 1000.0),
     (63.0, 1.0, 1.0),
     (65.0, 1.0, 1.0),
-];
+]);
+
+/// A case in which `frozen` has to hold behind an encoder; the others are shown.
+const BEHIND_ENCODER: Case = Case {
+    must: |subject| located(subject) && is_frozen(subject),
+    ..CASE
+};
+
+/// Four seconds of a joint behind an encoder at a steady speed.
+fn steady(subject: Subject, omega_rad_s: f64, readings: Readings) -> Trial {
+    let p = Parameters::default();
+    let mut criteria = vec![
+        cycle_rate(cycle_hz(&p, omega_rad_s), 1e-2),
+        interval_variation(3e-2),
+    ];
+    if !is_frozen(subject) {
+        // At most 2·f_max cycles of two events each.
+        criteria.push(events_per_second(4.0 * most_hz(&p)));
+    }
+    encoder(Shaft::Constant(omega_rad_s), 4.0, readings).meets(criteria)
+}
 
 /// The cases of this theme.
 pub(super) const CASES: &[Case] = &[
@@ -55,43 +48,28 @@ pub(super) const CASES: &[Case] = &[
         hard: "An angle of 10⁴ turns has steps of 4 mrad in f32, four times the whole travel of a stick: angles may \
                only travel as differences of counts, and those must survive the wrap of the counter.",
         source: "a counter of 32 bits wraps; at 1e4 rad an f32 has steps of 0.98 mrad, a whole stick",
-        long: false,
-        must: located,
         trials: |subject| {
-            let from = |shaft: &Shaft, rate_hz, duration_s, first_count| Input::Encoder {
-                shaft: shaft.clone(),
-                duration_s,
-                rate_hz,
-                lines: 512.0,
-                jitter: 0.0,
-                lost: 0.0,
-                first_count,
-            };
-            let settings = paper_joint(subject.convention);
-            let same = |shaft: &Shaft, rate_hz, duration_s, first_count| {
-                let plain = from(shaft, rate_hz, duration_s, 0);
-                trial(
-                    settings,
-                    from(shaft, rate_hz, duration_s, first_count),
-                    [Criterion::SameAs(plain)],
-                )
+            let same = |shaft: Shaft, rate_hz, duration_s, first_count| {
+                let from = |first_count| Readings {
+                    rate_hz,
+                    first_count,
+                    ..ENCODER
+                };
+                let plain = encoder(shaft.clone(), duration_s, from(0));
+                encoder(shaft, duration_s, from(first_count)).meets([same_as(plain)])
             };
             let (up, down) = (Shaft::Constant(1.0), Shaft::Constant(-1.0));
             let mut trials = vec![
-                same(&up, 2e4, 1.0, i32::MAX - 1000),
-                same(&down, 2e4, 1.0, i32::MIN + 1000),
-                same(&up, 2e4, 1.0, TEN_THOUSAND_TURNS),
+                same(up.clone(), 2e4, 1.0, i32::MAX - 1000),
+                same(down, 2e4, 1.0, i32::MIN + 1000),
+                same(up, 2e4, 1.0, TEN_THOUSAND_TURNS),
             ];
-            if subject.convention == Convention::Frozen {
-                trials.push(same(
-                    &Shaft::Knots(TEN_THOUSAND),
-                    1e3,
-                    65.0,
-                    i32::MAX - 1000,
-                ));
+            if is_frozen(subject) {
+                trials.push(same(TEN_THOUSAND, 1e3, 65.0, i32::MAX - 1000));
             }
             trials
         },
+        ..CASE
     },
     Case {
         id: "H26",
@@ -102,28 +80,21 @@ pub(super) const CASES: &[Case] = &[
                Under paper and physical a slip ends where the noise meets the object's velocity, and their overlap \
                is only 0.5 % at 1 rad/s: these are shown, and not required to hold.",
         source: "closed form of the cycle; the estimator that ships, bandwidth 50 Hz",
-        long: false,
-        must: frozen_located,
         trials: |subject| {
             let mut trials = Vec::new();
             for lines in [512.0, 1000.0, 2000.0] {
                 for rate_hz in [1e3, 2e4] {
-                    for omega in [0.1, 1.0, 3.0] {
-                        let input = Input::Encoder {
-                            shaft: Shaft::Constant(omega),
-                            duration_s: 4.0,
-                            rate_hz,
-                            lines,
-                            jitter: 0.0,
-                            lost: 0.0,
-                            first_count: 0,
-                        };
-                        trials.push(behind_encoder(subject, omega, input));
-                    }
+                    let readings = Readings {
+                        rate_hz,
+                        lines,
+                        ..ENCODER
+                    };
+                    trials.extend([0.1, 1.0, 3.0].map(|omega| steady(subject, omega, readings)));
                 }
             }
             trials
         },
+        ..BEHIND_ENCODER
     },
     Case {
         id: "H27",
@@ -134,28 +105,25 @@ pub(super) const CASES: &[Case] = &[
                recovered by the next one, which has travelled twice as far: angle and time stay exact, and only \
                the torque is held for a tick.",
         source: "closed form of the cycle; an angle that is counted is not lost with a reading",
-        long: false,
-        must: frozen_located,
         trials: |subject| {
             let mut trials = Vec::new();
             for lines in [512.0, 2000.0] {
                 for rate_hz in [1e3, 2e4] {
                     for (jitter, lost) in [(0.1, 0.0), (0.0, 0.05), (0.1, 0.05)] {
-                        let input = Input::Encoder {
-                            shaft: Shaft::Constant(1.0),
-                            duration_s: 4.0,
+                        let readings = Readings {
                             rate_hz,
                             lines,
                             jitter,
                             lost,
                             first_count: 0,
                         };
-                        trials.push(behind_encoder(subject, 1.0, input));
+                        trials.push(steady(subject, 1.0, readings));
                     }
                 }
             }
             trials
         },
+        ..BEHIND_ENCODER
     },
     Case {
         id: "H34",
@@ -166,31 +134,21 @@ pub(super) const CASES: &[Case] = &[
                limit of Colgate and Schenkel the swing grows, above it decays. Physical adds the object's inertia \
                to the loop and is left out.",
         source: "Colgate and Schenkel 1997, b > K·T/2; numbers from the eigenvalues of the exact discrete loop, over 2.5 s",
-        long: false,
-        must: located,
-        trials: |subject| {
-            if subject.convention == Convention::Physical {
-                return Vec::new();
-            }
-            let stiffness = Parameters::default().stiffness_nm_per_rad;
+        of: |subject| subject.convention != Convention::Physical,
+        trials: |_| {
+            let (stiffness, step_s) = (Parameters::default().stiffness_nm_per_rad, 1e-3);
             [(0.95, 1.2775), (1.05, 0.7777)]
                 .map(|(share, theory)| {
-                    let step_s = 1e-3;
-                    let input = Input::Hand {
+                    let hand = What::Hand {
                         inertia_kg_m2: 0.0503,
                         damping_nms_per_rad: share * stiffness * step_s / 2.0,
                         // 0.56 mrad of swing: well within a stick of 1 mrad.
                         omega_rad_s: 0.05,
-                        duration_s: 3.0,
-                        step_s,
                     };
-                    let criteria = [Criterion::SwingRatio {
-                        theory,
-                        within: 0.01,
-                    }];
-                    trial(paper_joint(subject.convention), input, criteria)
+                    Input::new(hand, 3.0, step_s).meets([swing_ratio(theory, 0.01)])
                 })
-                .to_vec()
+                .into()
         },
+        ..CASE
     },
 ];

@@ -2,11 +2,15 @@
 //! rests, and a step with more events than it may report.
 
 use super::motions::{DWELL, STOP, WANDER};
-use super::tools::{LOCATED, at_tick, events, joint, paper_joint, trial};
-use crate::stability::case::{Case, located};
-use crate::stability::criterion::{Counted, Criterion, Limits};
+use super::tools::{CASE, FROZEN, LOCATED, MOVING, at_tick, constant, knots, slip_s};
+use crate::stability::case::{Case, Trial};
+use crate::stability::criteria::{
+    BREAKS, EVENTS, count, cycle_rate, events, events_per_step, first_break_after, mirror_of,
+    no_break_at_rest, survives, torque,
+};
+use crate::stability::criterion::Limits;
 use crate::stability::input::Shaft;
-use crepitus_model::Convention;
+use crepitus_model::{Convention, Parameters, Restart};
 use crepitus_plant::motion::Strokes;
 
 /// A recording of a second: one pass of a knee in eleven rows.
@@ -45,55 +49,26 @@ pub(super) const CASES: &[Case] = &[
                gets the last one again and never finishes, or reads a velocity that no motion has. Mirrored, everything \
                must be the mirror image up to the last bit.",
         source: "a recording as long as its scene; the same for knots and strokes, by the reference",
-        long: false,
-        must: located,
-        trials: |subject| {
-            let settings = paper_joint(subject.convention);
-            let mut trials = vec![
-                trial(
-                    settings,
-                    at_tick(Shaft::Knots(DWELL), 1.1),
-                    [events(LOCATED)],
-                ),
-                trial(
-                    settings,
-                    at_tick(Shaft::Knots(STOP), 2.0),
-                    [events(LOCATED)],
-                ),
-                trial(
-                    settings,
-                    at_tick(Shaft::Knots(WANDER), 1.05),
-                    [events(LOCATED)],
-                ),
-            ];
+        trials: |_| {
+            let ends = [knots(DWELL, 1.1), knots(STOP, 2.0), knots(WANDER, 1.05)];
+            let mut trials: Vec<Trial> = ends.map(|input| input.meets([events(LOCATED)])).into();
             // 15/8 · 0.8 rad at 1.5 rad/s is one second a stroke.
             let strokes = |sign: f64| {
-                Shaft::Strokes(Strokes {
+                let strokes = Strokes {
                     from_rad: 0.0,
                     to_rad: sign * 0.8,
                     peak_speed_rad_s: 1.5,
                     pause_s: 0.0,
-                })
-            };
-            let rows = |sign| Shaft::Rows {
-                rows: ROWS,
-                sign,
-                cutoff_hz: 2.0,
-            };
-            for (shaft, mirrored, duration_s) in [
-                (strokes(1.0), strokes(-1.0), 2.0),
-                (rows(1.0), rows(-1.0), 1.0),
-            ] {
-                let mirror = Criterion::MirrorOf(at_tick(mirrored, duration_s));
-                let slips = Criterion::Count {
-                    what: Counted::Breaks,
-                    least: 1,
-                    most: 100,
                 };
-                trials.push(trial(settings, at_tick(shaft, duration_s), [mirror, slips]));
+                at_tick(Shaft::Strokes(strokes), 2.0)
+            };
+            let rows = |sign| at_tick(Shaft::Rows(ROWS, sign, 2.0), 1.0);
+            for (input, mirrored) in [(strokes(1.0), strokes(-1.0)), (rows(1.0), rows(-1.0))] {
+                trials.push(input.meets([mirror_of(mirrored), count(BREAKS, 1, 100)]));
             }
             trials
         },
+        ..CASE
     },
     Case {
         id: "H49",
@@ -104,44 +79,23 @@ pub(super) const CASES: &[Case] = &[
                the shaft rests, and nothing else is allowed. Ours ends in a stick, as dry friction does, and the \
                next movement winds it to Ts.",
         source: "documented tie; from Tk to Ts is half a millirad, 35 ms after 6 s, and 27.5 ms where c·Ω helps",
-        long: false,
-        must: located,
         trials: |subject| {
             let at_s = match subject.convention {
-                Convention::Frozen => return Vec::new(),
                 Convention::Paper => 6.035,
-                Convention::Physical => 6.027_5,
+                _ => 6.027_5,
             };
-            let settings = joint(subject.convention, [0.01, 400.0, 3.0, 0.2, 0.4]);
-            let few = Criterion::Count {
-                what: Counted::Events,
-                least: 1,
-                most: 2,
-            };
-            let at_rest = Criterion::TorqueWithin {
-                from_s: 5.6,
-                low_nm: 0.2,
-                high_nm: 0.2,
-                slack_nm: 1e-5,
-            };
-            let on = Criterion::FirstBreakAfter {
-                from_s: 5.6,
-                at_s,
-                within_s: Limits::both(1e-4),
-            };
-            vec![
-                trial(
-                    settings,
-                    at_tick(Shaft::Knots(STOPS), 5.9),
-                    [few, at_rest, Criterion::NoBreakAtRest],
-                ),
-                trial(
-                    settings,
-                    at_tick(Shaft::Knots(STOPS), 6.1),
-                    [on, Criterion::NoBreakAtRest],
-                ),
+            let few = count(EVENTS, 1, 2);
+            let at_rest = torque(5.6, 0.2, 0.2, 1e-5);
+            let on = first_break_after(5.6, at_s, 1e-4);
+            let damped = [0.01, 400.0, 3.0, 0.2, 0.4];
+            [
+                knots(STOPS, 5.9).meets([few, at_rest, no_break_at_rest()]),
+                knots(STOPS, 6.1).meets([on, no_break_at_rest()]),
             ]
+            .map(|trial| trial.with(damped))
+            .into()
         },
+        ..MOVING
     },
     Case {
         id: "H50",
@@ -150,17 +104,15 @@ pub(super) const CASES: &[Case] = &[
         hard: "The rest waits for the next step, where as many wait again: no number of cycles can be right, and the \
                torque must stay within its limits all the same. A scene warns and gives no frequency.",
         source: "a stick of 4 µs and a slip of 0.6 µs in steps of 50 µs; the cap is EVENTS_PER_STEP",
-        long: false,
-        must: located,
-        trials: |subject| {
-            let settings = joint(subject.convention, [1e-9, 1e5, 0.0, 0.2, 0.4]);
+        trials: |_| {
             [1.0, -1.0]
                 .map(|omega| {
-                    let criteria = [Criterion::Survives, Criterion::EventsPerStep { most: 8 }];
-                    trial(settings, at_tick(Shaft::Constant(omega), 0.05), criteria)
+                    let trial = constant(omega, 0.05).meets([survives(), events_per_step(8)]);
+                    trial.with([1e-9, 1e5, 0.0, 0.2, 0.4])
                 })
-                .to_vec()
+                .into()
         },
+        ..CASE
     },
     Case {
         id: "H51",
@@ -169,43 +121,22 @@ pub(super) const CASES: &[Case] = &[
         hard: "The paper's prose, T between Tk and Ts: the torque never falls below Tk, and a stick winds half as far. \
                Only `frozen` has it, and nothing but the restart differs.",
         source: "closed form: a stick of (Ts − Tk)/(kr·Ω), a slip as eqs. (10)–(11)",
-        long: false,
-        must: located,
-        trials: |subject| {
-            if subject.convention != Convention::Frozen {
-                return Vec::new();
-            }
-            let mut settings = paper_joint(subject.convention);
-            settings.restart = crepitus_model::Restart::FromKinetic;
-            let p = settings.parameters;
+        trials: |_| {
+            let p = Parameters::default();
             [0.1, 1.0, -1.0]
                 .map(|omega: f64| {
                     let drop_nm = p.static_torque_nm - p.kinetic_torque_nm;
                     let stick_s = drop_nm / (p.stiffness_nm_per_rad * omega.abs());
-                    let cycle_s = stick_s + super::tools::slip_s(&p, omega);
-                    let (low_nm, high_nm) = if omega > 0.0 {
-                        (0.2, 0.4)
-                    } else {
-                        (-0.4, -0.2)
-                    };
-                    let criteria = [
-                        Criterion::CycleRate {
-                            hz: 1.0 / cycle_s,
-                            within: Limits {
-                                f64: 1e-9,
-                                f32: 1e-5,
-                            },
-                        },
-                        Criterion::TorqueWithin {
-                            from_s: 0.1,
-                            low_nm,
-                            high_nm,
-                            slack_nm: 1e-6,
-                        },
-                    ];
-                    trial(settings, at_tick(Shaft::Constant(omega), 2.0), criteria)
+                    let rate_hz = 1.0 / (stick_s + slip_s(&p, omega));
+                    let rate = cycle_rate(rate_hz, Limits(1e-9, 1e-5));
+                    let high_nm = if omega > 0.0 { 0.4 } else { -0.2 };
+                    let band = torque(0.1, high_nm - 0.2, high_nm, 1e-6);
+                    let mut trial = constant(omega, 2.0).meets([rate, band]);
+                    trial.settings.restart = Restart::FromKinetic;
+                    trial
                 })
-                .to_vec()
+                .into()
         },
+        ..FROZEN
     },
 ];

@@ -1,29 +1,19 @@
 //! Parameters and speeds at the ends of their ranges.
 
-use super::tools::{LOCATED, TICK_S, at_tick, cycle_hz, events, joint, paper_joint, slip_s, trial};
-use crate::stability::case::{Case, Trial, located};
-use crate::stability::criterion::{Counted, Criterion, Limits};
-use crate::stability::input::{Input, Shaft};
-use crate::stability::subject::Subject;
-use crepitus_model::{Convention, Real};
+use super::tools::{CASE, LOCATED, TICK_S, constant, cycle_hz, is_frozen, slip_s};
+use crate::stability::case::{Case, Trial};
+use crate::stability::criteria::{
+    BREAKS, count, cycle_rate, events, events_per_step, slip_time, survives, torque,
+};
+use crate::stability::criterion::Limits;
+use crate::stability::input::{Input, What};
+use crepitus_model::parameters::Tabled;
+use crepitus_model::{Parameters, Real};
 
-fn storm_trials(
-    subject: Subject,
-    seeds: std::ops::RangeInclusive<u64>,
-    duration_s: f64,
-) -> Vec<Trial> {
-    seeds
-        .map(|seed| {
-            let input = Input::White {
-                most_rad_s: 50.0,
-                seed,
-                duration_s,
-                step_s: TICK_S,
-            };
-            let criteria = [Criterion::Survives, Criterion::EventsPerStep { most: 8 }];
-            trial(paper_joint(subject.convention), input, criteria)
-        })
-        .collect()
+fn storm(seed: u64, duration_s: f64) -> Trial {
+    let most_rad_s = 50.0;
+    let input = Input::new(What::White { most_rad_s, seed }, duration_s, TICK_S);
+    input.meets([survives(), events_per_step(8)])
 }
 
 const STORM: Case = Case {
@@ -33,9 +23,8 @@ const STORM: Case = Case {
     hard: "A broken sensor looks like this. Accelerations of 2e6 rad/s² and jumps at every fourth step lead \
            through every branch; the work of a step must stay bounded, and everything finite.",
     source: "what holds for any motion: |T| ≤ Ts, at most 8 events a step, no NaN",
-    long: false,
-    must: located,
-    trials: |subject| storm_trials(subject, 1..=2, 5.0),
+    trials: |_| vec![storm(1, 5.0), storm(2, 5.0)],
+    ..CASE
 };
 
 /// The cases of this theme.
@@ -47,24 +36,14 @@ pub(super) const CASES: &[Case] = &[
         hard: "The object swings faster than the step. Explicit methods blow up above ωn·h = 2, implicit Euler \
                damps the swing away, and a method without location finds one cycle in twenty.",
         source: "tests/reference-cases, k15, with 50 digits",
-        long: false,
-        must: located,
-        trials: |subject| {
-            let settings = joint(subject.convention, [1e-5, 4e4, 0.0, 0.2, 0.4]);
+        trials: |_| {
+            let values = [1e-5, 4e4, 0.0, 0.2, 0.4];
             let duration_s = 0.1;
-            let cycles = cycle_hz(&settings.parameters, 1.0) * duration_s;
-            let count = |share: f64| (cycles * share).whole();
-            let breaks = Criterion::Count {
-                what: Counted::Breaks,
-                least: count(0.99),
-                most: count(1.01),
-            };
-            vec![trial(
-                settings,
-                at_tick(Shaft::Constant(1.0), duration_s),
-                [breaks],
-            )]
+            let cycles = cycle_hz(&Parameters::of(values), 1.0) * duration_s;
+            let breaks = count(BREAKS, (cycles * 0.99).whole(), (cycles * 1.01).whole());
+            vec![constant(1.0, duration_s).meets([breaks]).with(values)]
         },
+        ..CASE
     },
     Case {
         id: "H14",
@@ -73,31 +52,18 @@ pub(super) const CASES: &[Case] = &[
         hard: "A slip lasts 160 ns to 5 µs, far less than a step, and 1/J is 1e12: in the limit the angle jumps. \
                Accelerations of 2e11 rad/s² must not overflow, nor their squares.",
         source: "J → 0: a slip takes no time and ends at 2Tk − Ts; tests/reference-cases, j21, with 50 digits",
-        long: false,
-        must: located,
-        trials: |subject| {
+        trials: |_| {
             [1e-9, 1e-12]
                 .map(|inertia| {
-                    let settings = joint(subject.convention, [inertia, 400.0, 0.0, 0.2, 0.4]);
-                    let criteria = [
-                        Criterion::CycleRate {
-                            hz: cycle_hz(&settings.parameters, 1.0),
-                            within: Limits {
-                                f64: 1e-9,
-                                f32: 1e-5,
-                            },
-                        },
-                        Criterion::TorqueWithin {
-                            from_s: 0.0,
-                            low_nm: 0.0,
-                            high_nm: 0.4,
-                            slack_nm: 1e-5,
-                        },
-                    ];
-                    trial(settings, at_tick(Shaft::Constant(1.0), 0.5), criteria)
+                    let values = [inertia, 400.0, 0.0, 0.2, 0.4];
+                    let hz = cycle_hz(&Parameters::of(values), 1.0);
+                    let rate = cycle_rate(hz, Limits(1e-9, 1e-5));
+                    let trial = constant(1.0, 0.5).meets([rate, torque(0.0, 0.0, 0.4, 1e-5)]);
+                    trial.with(values)
                 })
-                .to_vec()
+                .into()
         },
+        ..CASE
     },
     Case {
         id: "H15",
@@ -106,24 +72,20 @@ pub(super) const CASES: &[Case] = &[
         hard: "A stick winds up by 400 or 2500 rad in steps of 1 mrad: in f32 a plain sum stops growing once the \
                step is half its last digit, and the break comes late or never.",
         source: "tests/reference-cases, l16, with 50 digits; closed form of the cycle",
-        long: false,
-        must: located,
-        trials: |subject| {
-            let on = |values, omega, duration_s, within_s| {
-                let input = at_tick(Shaft::Constant(omega), duration_s);
-                trial(joint(subject.convention, values), input, [events(within_s)])
-            };
+        trials: |_| {
             // The only error is the rounding of a sum of 4e5 steps.
-            let summed = Limits {
-                f64: 1e-9,
-                f32: LOCATED.f32,
+            let summed = Limits(1e-9, LOCATED.1);
+            let run = |values, omega, duration_s, within_s: Limits| {
+                let trial = constant(omega, duration_s).meets([events(within_s)]);
+                trial.with(values)
             };
             vec![
-                on([0.01, 10.0, 0.0, 0.2, 0.4], 1.0, 10.0, LOCATED),
-                on([0.01, 1e-3, 0.0, 0.2, 0.4], 20.0, 21.0, summed),
-                on([0.01, 400.0, 0.0, 0.2, 1e6], 200.0, 13.0, summed),
+                run([0.01, 10.0, 0.0, 0.2, 0.4], 1.0, 10.0, LOCATED),
+                run([0.01, 1e-3, 0.0, 0.2, 0.4], 20.0, 21.0, summed),
+                run([0.01, 400.0, 0.0, 0.2, 1e6], 200.0, 13.0, summed),
             ]
         },
+        ..CASE
     },
     STORM,
     Case {
@@ -131,7 +93,7 @@ pub(super) const CASES: &[Case] = &[
         name: "storm-long",
         title: "White velocity for ten million steps",
         long: true,
-        trials: |subject| storm_trials(subject, 3..=3, 500.0),
+        trials: |_| vec![storm(3, 500.0)],
         ..STORM
     },
     Case {
@@ -142,29 +104,18 @@ pub(super) const CASES: &[Case] = &[
                by λ²/2 = 5e-15 of the speed, which no number of f32 and few of f64 can hold: there only the \
                common bounds must hold. A frozen slip must last the whole period 2π/ωn.",
         source: "what holds for any motion: |T| ≤ Ts; a slip of any speed lasts less than 2π/ωn",
-        long: false,
-        must: located,
         trials: |subject| {
-            let settings = paper_joint(subject.convention);
             [1e3, 1e6, -1e6]
-                .map(|omega: f64| {
-                    let mut run = trial(
-                        settings,
-                        at_tick(Shaft::Constant(omega), 1.0),
-                        [Criterion::Survives],
-                    );
-                    if subject.convention == Convention::Frozen {
-                        run.criteria.push(Criterion::SlipTime {
-                            slip_s: slip_s(&settings.parameters, omega),
-                            within: Limits {
-                                f64: 1e-9,
-                                f32: 1e-6,
-                            },
-                        });
+                .map(|omega| {
+                    let mut criteria = vec![survives()];
+                    if is_frozen(subject) {
+                        let lasting_s = slip_s(&Parameters::default(), omega);
+                        criteria.push(slip_time(lasting_s, Limits(1e-9, 1e-6)));
                     }
-                    run
+                    constant(omega, 1.0).meets(criteria)
                 })
-                .to_vec()
+                .into()
         },
+        ..CASE
     },
 ];

@@ -1,10 +1,11 @@
 //! Steps and parameters that must be refused.
 
-use super::tools::{TICK_S, joint, paper_joint, trial};
-use crate::stability::case::{Case, located};
-use crate::stability::criterion::Criterion;
-use crate::stability::input::{Attempt, Input};
-use crepitus_model::Settings;
+use super::tools::{CASE, TICK_S};
+use crate::stability::case::Case;
+use crate::stability::criteria::refused;
+use crate::stability::input::{Input, What};
+use crepitus_model::Parameters;
+use crepitus_model::parameters::Tabled;
 
 /// The cases of this theme.
 pub(super) const CASES: &[Case] = &[
@@ -13,17 +14,9 @@ pub(super) const CASES: &[Case] = &[
         name: "bad-steps",
         title: "Steps of zero length, of negative length, of NaN",
         hard: "A step of zero divides by zero, a negative one runs time backwards, and NaN passes every comparison \
-                that is written the wrong way round. In a step of 1000 s a joint of the paper makes 31,831 cycles.",
+               that is written the wrong way round. In a step of 1000 s a joint of the paper makes 31,831 cycles.",
         source: "the documented errors of StepCoefficients and of a step",
-        long: false,
-        must: located,
-        trials: |subject| {
-            let settings = paper_joint(subject.convention);
-            let attempt = |(what, step_s)| Attempt {
-                what,
-                settings,
-                step_s,
-            };
+        trials: |_| {
             let attempts = [
                 ("a step of 0 s", 0.0),
                 ("a step of −0 s", -0.0),
@@ -31,13 +24,11 @@ pub(super) const CASES: &[Case] = &[
                 ("a step of 1000 s", 1e3),
                 ("a step without end", f64::INFINITY),
                 ("a step of NaN s", f64::NAN),
-            ];
-            vec![trial(
-                settings,
-                Input::Refusals(attempts.map(attempt).to_vec()),
-                [Criterion::Refused],
-            )]
+            ]
+            .map(|(what, step_s)| (what, Parameters::default(), step_s));
+            vec![Input::still(What::Refusals(attempts.into())).meets([refused()])]
         },
+        ..CASE
     },
     Case {
         id: "H22",
@@ -46,20 +37,13 @@ pub(super) const CASES: &[Case] = &[
         hard: "A spring or an inertia of zero divides by zero, Tk above Ts turns the drop into a push, negative \
                damping feeds the swing, and NaN slips through a check that asks whether a value is too large.",
         source: "the documented errors of Settings",
-        long: false,
-        must: located,
-        trials: |subject| {
-            let attempt = |(what, values): (&'static str, [f64; 5])| Attempt {
-                what,
-                settings: joint(subject.convention, values),
-                step_s: TICK_S,
-            };
-            let nan = f64::NAN;
+        trials: |_| {
+            let (nan, infinite) = (f64::NAN, f64::INFINITY);
             let attempts = [
                 ("kr = 0", [0.01, 0.0, 0.0, 0.2, 0.4]),
                 ("kr = −400", [0.01, -400.0, 0.0, 0.2, 0.4]),
                 ("kr = NaN", [0.01, nan, 0.0, 0.2, 0.4]),
-                ("kr = ∞", [0.01, f64::INFINITY, 0.0, 0.2, 0.4]),
+                ("kr = ∞", [0.01, infinite, 0.0, 0.2, 0.4]),
                 ("J = 0", [0.0, 400.0, 0.0, 0.2, 0.4]),
                 ("J = −0.01", [-0.01, 400.0, 0.0, 0.2, 0.4]),
                 ("J = NaN", [nan, 400.0, 0.0, 0.2, 0.4]),
@@ -69,13 +53,11 @@ pub(super) const CASES: &[Case] = &[
                 ("Tk = NaN", [0.01, 400.0, 0.0, nan, 0.4]),
                 ("Ts below Tk", [0.01, 400.0, 0.0, 0.2, 0.19]),
                 ("Ts = NaN", [0.01, 400.0, 0.0, 0.2, nan]),
-                ("Ts = ∞", [0.01, 400.0, 0.0, 0.2, f64::INFINITY]),
-            ];
-            vec![trial(
-                Settings::default(),
-                Input::Refusals(attempts.map(attempt).to_vec()),
-                [Criterion::Refused],
-            )]
+                ("Ts = ∞", [0.01, 400.0, 0.0, 0.2, infinite]),
+            ]
+            .map(|(what, values)| (what, Parameters::of(values), TICK_S));
+            vec![Input::still(What::Refusals(attempts.into())).meets([refused()])]
         },
+        ..CASE
     },
 ];

@@ -1,8 +1,9 @@
 //! Cases decided by the last digits.
 
-use super::tools::{LOCATED, TICK_S, at_tick, events, exactly, joint, paper_joint, slip_s, trial};
-use crate::stability::case::{Case, located};
-use crate::stability::criterion::{Counted, Criterion, Limits};
+use super::tools::{CASE, FROZEN, LOCATED, MOVING, TICK_S, constant, is_frozen, repeated, slip_s};
+use crate::stability::case::Case;
+use crate::stability::criteria::{EVENTS, events, exactly, slip_time, subnormals};
+use crate::stability::criterion::Limits;
 use crate::stability::input::{Input, Shaft};
 use crate::stability::subject::{Rung, Subject};
 use crepitus_model::parameters::Tabled;
@@ -14,13 +15,12 @@ use crepitus_scene::scene::Precision;
 /// Subjects that check for a match only at the end of a step, after a break
 /// located within it.
 fn interpolates(subject: Subject) -> bool {
-    subject.solver == Rung::Ladder(Solver::ExactInterpolated)
-        && subject.convention != Convention::Frozen
+    subject.solver == Rung::Ladder(Solver::ExactInterpolated) && !is_frozen(subject)
 }
 
 // A stick of `paper` that is held at its limit while the hand brakes, and
 // breaks in the instant in which the true torque reaches Tk.
-const HELD: &[(f64, f64, f64)] = &[
+const HELD: Shaft = Shaft::Knots(&[
     (0.0, 5.015_864_687_484_201, 5.015_864_687_484_201),
     (6e-4, -7.562_768_377_573_861, -7.562_768_377_573_861),
     (1.2e-3, 0.047_103_171_072_371_33, 0.047_103_171_072_371_33),
@@ -30,7 +30,7 @@ const HELD: &[(f64, f64, f64)] = &[
     (3.6e-3, 0.0, 0.0),
     (4.2e-3, -2.843_622_718_732_403_2, -2.843_622_718_732_403_2),
     (4.8e-3, 5.047_445_017_779_298, 5.047_445_017_779_298),
-];
+]);
 
 /// The cases of this theme.
 pub(super) const CASES: &[Case] = &[
@@ -41,28 +41,17 @@ pub(super) const CASES: &[Case] = &[
         hard: "A period of 628.3 ticks in one f32 number is known to 3e-5 of a tick, and every slip is off by it in \
                the same direction. In whole ticks and a fraction it is known to 6e-8.",
         source: "model/src/joint/ticks.rs; at 1000 rad/s a slip is a period but for λ = 1e-4",
-        long: false,
-        must: located,
-        trials: |subject| {
-            if subject.convention != Convention::Frozen {
-                return Vec::new();
-            }
+        trials: |_| {
             joints()
                 .iter()
-                .map(|preset| {
-                    let p = preset.parameters;
-                    let slip = Criterion::SlipTime {
-                        slip_s: slip_s(&p, 1e3),
-                        within: Limits {
-                            f64: 1e-9,
-                            f32: 2e-9,
-                        },
-                    };
-                    let settings = joint(subject.convention, p.values());
-                    trial(settings, at_tick(Shaft::Constant(1e3), 1.0), [slip])
+                .map(|joint| {
+                    let slip = slip_time(slip_s(&joint.parameters, 1e3), Limits(1e-9, 2e-9));
+                    let trial = constant(1e3, 1.0).meets([slip]);
+                    trial.with(joint.parameters.values())
                 })
                 .collect()
         },
+        ..FROZEN
     },
     Case {
         id: "H53",
@@ -71,20 +60,11 @@ pub(super) const CASES: &[Case] = &[
         hard: "A damped object that slides for ever swings less and less. Its velocity passes through every exponent, \
                and some processors are a hundred times slower with subnormal numbers.",
         source: "damping ratio 0.5: e^(−100 t) is 1e-38 after 0.9 s and 1e-308 after 7 s; Real::AT_REST",
-        long: false,
-        must: located,
-        trials: |subject| {
-            if subject.convention == Convention::Frozen {
-                return Vec::new();
-            }
-            let input = Input::Repeated {
-                omega_rad_s: 1.0,
-                duration_s: 20.0,
-                step_s: 1e-3,
-            };
-            let settings = joint(subject.convention, [0.01, 400.0, 2.0, 0.2, 0.4]);
-            vec![trial(settings, input, [Criterion::Subnormals { most: 0 }])]
+        trials: |_| {
+            let trial = repeated(1.0, 20.0, 1e-3).meets([subnormals(0)]);
+            vec![trial.with([0.01, 400.0, 2.0, 0.2, 0.4])]
         },
+        ..MOVING
     },
     Case {
         id: "H54",
@@ -93,27 +73,24 @@ pub(super) const CASES: &[Case] = &[
         hard: "The rest of the step is shorter than a rounding of the velocities: object and shaft are still equal, \
                and a method that checks only its end finds no lead, takes that for a match, and sticks at once.",
         source: "Ts/(kr·Ω) a whole number of steps, and a few roundings less",
-        long: false,
+        of: interpolates,
         must: interpolates,
-        trials: |subject| {
-            if !interpolates(subject) {
-                return Vec::new();
-            }
-            let settings = paper_joint(subject.convention);
-            let p: Parameters = settings.parameters;
+        trials: |_| {
+            let p = Parameters::default();
             let mut trials = Vec::new();
-            for steps in [7_u32, 11, 13, 17, 20, 23, 37] {
-                for roundings in [0_u32, 1, 2, 4, 8, 16] {
-                    let share = 1.0 + f64::from(roundings) * 1.2e-7;
-                    let stick_s = f64::from(steps) * TICK_S;
+            for steps in [7.0, 11.0, 13.0, 17.0, 20.0, 23.0, 37.0] {
+                for roundings in [0.0, 1.0, 2.0, 4.0, 8.0, 16.0] {
+                    let share = 1.0 + roundings * 1.2e-7;
+                    let stick_s = steps * TICK_S;
                     let omega = share * p.static_torque_nm / (p.stiffness_nm_per_rad * stick_s);
                     // The break and nothing else before the object turns.
-                    let input = at_tick(Shaft::Constant(omega), stick_s + 0.01);
-                    trials.push(trial(settings, input, [exactly(Counted::Events, 1)]));
+                    let input = constant(omega, stick_s + 0.01);
+                    trials.push(input.meets([exactly(EVENTS, 1)]));
                 }
             }
             trials
         },
+        ..CASE
     },
     Case {
         id: "H55",
@@ -123,12 +100,10 @@ pub(super) const CASES: &[Case] = &[
                for a match ends the slip where it began; to wait until they part by too wide a bound misses \
                the match that soon follows.",
         source: "found by a random search, kept in model/tests/invariances.rs; events by the reference",
-        long: false,
-        must: located,
-        trials: |subject| {
-            if subject.convention != Convention::Paper || subject.precision != Precision::F64 {
-                return Vec::new();
-            }
+        of: |subject| {
+            subject.convention == Convention::Paper && subject.precision == Precision::F64
+        },
+        trials: |_| {
             let values = [
                 0.000_547_687_392_378_403_7,
                 1_835.059_038_387_849_8,
@@ -138,14 +113,11 @@ pub(super) const CASES: &[Case] = &[
             ];
             [1e-5, 5e-5, 1e-4]
                 .map(|step_s| {
-                    let input = Input::Sampled {
-                        shaft: Shaft::Knots(HELD),
-                        duration_s: 4.8e-3,
-                        step_s,
-                    };
-                    trial(joint(subject.convention, values), input, [events(LOCATED)])
+                    let input = Input::sampled(HELD, 4.8e-3, step_s);
+                    input.meets([events(LOCATED)]).with(values)
                 })
-                .to_vec()
+                .into()
         },
+        ..CASE
     },
 ];

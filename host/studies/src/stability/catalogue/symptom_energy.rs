@@ -1,13 +1,14 @@
 //! Energy that a hand gets back from symptoms, and settings that must be refused.
 
-use super::symptom_tools::{renders_symptoms, trial, under};
-use crate::stability::case::{Case, Trial, located};
-use crate::stability::criterion::Criterion;
-use crate::stability::input::{Input, RefusedSymptoms, SymptomRun};
-use crate::stability::subject::Rung;
+use super::symptom_tools::{DEVICE, armed, lasting, plain, wander};
+use crate::stability::case::Case;
+use crate::stability::criteria::{net_returned, refused, springs_return};
+use crate::stability::input::{Input, SymptomRun, What};
 use crate::symptoms::{Given, Hand};
-use crepitus_model::Settings;
 use crepitus_model::render::effects::{TANK_J, TANK_REFILL_W};
+
+/// The most that a hand gets back in two seconds of what the tank pays for, J.
+pub(super) const PAID_J: f64 = TANK_J + 2.0 * TANK_REFILL_W;
 
 /// The symptoms that are springs, each stiff and strong.
 pub(super) fn springs() -> [Given; 6] {
@@ -24,8 +25,8 @@ pub(super) fn springs() -> [Given; 6] {
             ],
             &[],
         ),
-        Given::new("lead-pipe", &[], &[]),
-        Given::new("cogwheel", &[], &[]),
+        plain("lead-pipe"),
+        plain("cogwheel"),
         Given::new(
             "spasticity",
             &[("threshold_deg", 70.0)],
@@ -40,7 +41,7 @@ pub(super) fn springs() -> [Given; 6] {
             ],
             &[],
         ),
-        Given::new("texture", &[], &[]),
+        plain("texture"),
     ]
 }
 
@@ -54,31 +55,22 @@ pub(super) const CASES: &[Case] = &[
                limit that jumps up under the leg, or a spring whose end is not taken along. What returns is the spring's energy and that \
                of sampling, with the torque 0, 1 or 2 ticks late.",
         source: "docs/symptoms.md, The play: E ≤ T₀²/2σ + (½ + d)·σ·h·∫Ω² dt",
-        long: false,
-        must: located,
-        trials: |subject| {
-            if !renders_symptoms(subject) || subject.solver == Rung::Reference {
-                return Vec::new();
-            }
+        trials: |_| {
             let mut trials = Vec::new();
             for given in springs() {
                 for seed in 1..=4 {
                     for delay_ticks in 0..=2 {
-                        let hand = Hand::Wander {
-                            about_deg: 60.0,
-                            deg_s: 200.0,
-                            seed,
-                        };
                         let run = SymptomRun {
                             delay_ticks,
-                            ..under(&given, hand, 4.0)
+                            ..armed(&given, wander(60.0, 200.0, seed))
                         };
-                        trials.push(trial(run, [Criterion::SpringsReturn { most: 1.0 }]));
+                        trials.push(lasting(run, 4.0).meets([springs_return(1.0)]));
                     }
                 }
             }
             trials
         },
+        ..DEVICE
     },
     Case {
         id: "H73",
@@ -87,12 +79,7 @@ pub(super) const CASES: &[Case] = &[
         hard: "Both push. A reflex gives energy above 3.7 Hz, beats to a hand that moves with them. One tank of 0.2 J with 0.04 W pays for \
                both, so that no hand gets more than 0.28 J in any 2 s, however late the torque is.",
         source: "docs/symptoms.md, Sum, tank and limits",
-        long: false,
-        must: located,
-        trials: |subject| {
-            if !renders_symptoms(subject) || subject.solver == Rung::Reference {
-                return Vec::new();
-            }
+        trials: |_| {
             let reflex = Given::new(
                 "spasticity",
                 &[("gain_nm_per_rad", 20.0), ("threshold_deg", 60.0)],
@@ -123,19 +110,15 @@ pub(super) const CASES: &[Case] = &[
                         let run = SymptomRun {
                             symptoms: symptoms.clone(),
                             delay_ticks,
-                            ..under(&Given::new("clonus", &[], &[]), hand, 6.0)
+                            ..armed(&plain("clonus"), hand)
                         };
-                        trials.push(trial(
-                            run,
-                            [Criterion::NetReturned {
-                                most_j: TANK_J + 2.0 * TANK_REFILL_W,
-                            }],
-                        ));
+                        trials.push(lasting(run, 6.0).meets([net_returned(PAID_J)]));
                     }
                 }
             }
             trials
         },
+        ..DEVICE
     },
     Case {
         id: "H74",
@@ -145,33 +128,29 @@ pub(super) const CASES: &[Case] = &[
                nothing, rings; together they may be stiffer than dry friction keeps quiet. NaN passes every comparison that is \
                written the wrong way round.",
         source: "docs/symptoms.md, Sum, tank and limits",
-        long: false,
-        must: located,
-        trials: |subject| {
-            if !renders_symptoms(subject) || subject.solver == Rung::Reference {
-                return Vec::new();
-            }
-            let wall = |k1: f64, k2: f64, loss: f64| {
+        trials: |_| {
+            let wall = |k1: f64, loss: f64| {
                 Given::new(
                     "range-limit",
                     &[
                         ("flexion_stiffness_nm_per_rad", k1),
-                        ("flexion_stiffening_nm_per_rad2", k2),
+                        ("flexion_stiffening_nm_per_rad2", 0.0),
                         ("flexion_loss", loss),
                     ],
                     &[],
                 )
             };
             let one = |effect, numbers: &[(&'static str, f64)]| Given::new(effect, numbers, &[]);
-            let reflex = |numbers: &[(&'static str, f64)]| {
-                Given::new("spasticity", numbers, &[("form", "reflex")])
+            let reflex = |shift_s: f64| {
+                let shift = [("velocity_shift_s", shift_s)];
+                Given::new("spasticity", &shift, &[("form", "reflex")])
             };
             let nan = f64::NAN;
             let attempts = vec![
-                ("a wall of 1,001 N·m/rad", vec![wall(600.0, 0.0, 0.401)]),
+                ("a wall of 1,001 N·m/rad", vec![wall(600.0, 0.401)]),
                 (
                     "a wall of 401 N·m/rad without a loss",
-                    vec![wall(401.0, 0.0, 0.0)],
+                    vec![wall(401.0, 0.0)],
                 ),
                 (
                     "ends of the range 4.9° apart",
@@ -183,20 +162,14 @@ pub(super) const CASES: &[Case] = &[
                 (
                     "1,236 N·m/rad together",
                     vec![
-                        wall(300.0, 0.0, 0.25),
+                        wall(300.0, 0.25),
                         one("lead-pipe", &[("torque_nm", 2.2), ("presliding_deg", 0.5)]),
                         one("texture", &[("stiffness_nm_per_rad", 400.0)]),
                         one("clasp-knife", &[("catch_stiffness_nm_per_rad", 190.0)]),
                     ],
                 ),
-                (
-                    "a reflex with μ < τd + τa",
-                    vec![reflex(&[("velocity_shift_s", 0.059)])],
-                ),
-                (
-                    "a reflex with μ = NaN",
-                    vec![reflex(&[("velocity_shift_s", nan)])],
-                ),
+                ("a reflex with μ < τd + τa", vec![reflex(0.059)]),
+                ("a reflex with μ = NaN", vec![reflex(nan)]),
                 (
                     "a clasp-knife that is released before its onset",
                     vec![one(
@@ -217,14 +190,8 @@ pub(super) const CASES: &[Case] = &[
                     vec![one("cogwheel", &[("frequency_hz", 0.0)])],
                 ),
             ];
-            let attempts = attempts
-                .into_iter()
-                .map(|(what, symptoms)| RefusedSymptoms { what, symptoms });
-            vec![Trial {
-                settings: Settings::default(),
-                input: Input::SymptomRefusals(attempts.collect()),
-                criteria: vec![Criterion::Refused],
-            }]
+            vec![Input::still(What::SymptomRefusals(attempts)).meets([refused()])]
         },
+        ..DEVICE
     },
 ];

@@ -1,25 +1,31 @@
 //! Helpers shared by the cases of symptoms besides crepitus.
 
-use super::tools::TICK_S;
-use crate::stability::case::Trial;
+use super::tools::{CASE, TICK_S, is_frozen};
+use crate::stability::case::Case;
+use crate::stability::criteria::{symptom_events, symptom_torques, word_count, words};
 use crate::stability::criterion::{Criterion, Limits};
-use crate::stability::input::{Input, Lost, SymptomRun};
+use crate::stability::input::{Input, SymptomRun, What};
 use crate::stability::subject::{Rung, Subject};
 use crate::symptoms::{Given, Hand};
 use crepitus_model::render::effects::symptom::Word;
 use crepitus_model::solver::Solver;
-use crepitus_model::{Convention, Settings};
 
 /// Limits that the laws promise where the motion is a parabola in every tick: events.
-pub(super) const ON_TIME: Limits = Limits {
-    f64: 1e-9,
-    f32: 1e-6,
-};
+pub(super) const ON_TIME: Limits = Limits(1e-9, 1e-6);
 
 /// Limits that the laws promise where the motion is a parabola in every tick: torque at the ends of ticks.
-pub(super) const SAME_TORQUE: Limits = Limits {
-    f64: 5e-6,
-    f32: 5e-5,
+const SAME_TORQUE: Limits = Limits(5e-6, 5e-5);
+
+/// A case of what the firmware has, and of the reference of symptoms.
+pub(super) const SYMPTOM: Case = Case {
+    of: renders_symptoms,
+    ..CASE
+};
+
+/// A case of what the firmware has.
+pub(super) const DEVICE: Case = Case {
+    of: |subject| renders_symptoms(subject) && subject.solver != Rung::Reference,
+    ..CASE
 };
 
 /// Returns whether a subject renders symptoms: it is what the firmware has, or their reference. Symptoms
@@ -29,72 +35,87 @@ pub(super) fn renders_symptoms(subject: Subject) -> bool {
         subject.solver,
         Rung::Reference | Rung::Ladder(Solver::ExactEvents)
     );
-    subject.convention == Convention::Frozen && is_either
+    is_frozen(subject) && is_either
 }
 
-/// One symptom under a hand, on the true motion at the device's tick.
-pub(super) fn under(given: &Given, hand: Hand, duration_s: f64) -> SymptomRun {
+/// A symptom at its defaults.
+pub(super) fn plain(effect: &'static str) -> Given {
+    Given::new(effect, &[], &[])
+}
+
+/// A hand at one velocity.
+pub(super) fn steady(from_deg: f64, deg_s: f64) -> Hand {
+    Hand::Constant { from_deg, deg_s }
+}
+
+/// A hand at one velocity, deg/s, to an angle, about which it then trembles by this amplitude,
+/// deg, and frequency, Hz.
+pub(super) fn tremble(
+    (from_deg, deg_s): (f64, f64),
+    at_deg: f64,
+    (by_deg, frequency_hz): (f64, f64),
+) -> Hand {
+    Hand::Tremble {
+        from_deg,
+        deg_s,
+        at_deg,
+        by_deg,
+        frequency_hz,
+    }
+}
+
+/// A hand that wanders about an angle at velocities up to this.
+pub(super) fn wander(about_deg: f64, deg_s: f64, seed: u64) -> Hand {
+    Hand::Wander {
+        about_deg,
+        deg_s,
+        seed,
+    }
+}
+
+/// One symptom under a hand, on the true motion.
+pub(super) fn armed(given: &Given, hand: Hand) -> SymptomRun {
     SymptomRun {
         symptoms: vec![given.clone()],
         hand,
         counts: false,
         commits: Vec::new(),
-        lost: Lost::NONE,
         delay_ticks: 0,
         delay_varies: false,
-        duration_s,
-        step_s: TICK_S,
     }
 }
 
-/// This run through the encoder.
-pub(super) fn seen_in_counts(run: SymptomRun) -> SymptomRun {
-    SymptomRun {
+/// A run at the device's tick.
+pub(super) fn lasting(run: SymptomRun, duration_s: f64) -> Input {
+    Input::new(What::Symptoms(run), duration_s, TICK_S)
+}
+
+/// One symptom under a hand, on the true motion.
+pub(super) fn under(given: &Given, hand: Hand, duration_s: f64) -> Input {
+    lasting(armed(given, hand), duration_s)
+}
+
+/// One symptom under a hand, through the encoder.
+pub(super) fn in_counts(given: &Given, hand: Hand, duration_s: f64) -> Input {
+    let run = SymptomRun {
         counts: true,
-        ..run
-    }
-}
-
-/// A trial.
-pub(super) fn trial<const N: usize>(run: SymptomRun, criteria: [Criterion; N]) -> Trial {
-    Trial {
-        settings: Settings::default(),
-        input: Input::Symptoms(run),
-        criteria: Vec::from(criteria),
-    }
+        ..armed(given, hand)
+    };
+    lasting(run, duration_s)
 }
 
 /// Events and torque of the reference.
 pub(super) fn as_the_reference() -> [Criterion; 2] {
-    [
-        Criterion::SymptomEvents { within_s: ON_TIME },
-        Criterion::SymptomTorques {
-            within_nm: SAME_TORQUE,
-        },
-    ]
+    [symptom_events(ON_TIME), symptom_torques(SAME_TORQUE)]
 }
 
 /// The events of the reference, which are these, and its torque.
-pub(super) fn exactly(words: &'static [Word]) -> [Criterion; 3] {
+pub(super) fn exactly(all: &'static [Word]) -> [Criterion; 3] {
     let [events, torques] = as_the_reference();
-    [events, torques, Criterion::Words(words)]
+    [events, torques, words(all)]
 }
 
-/// Criterion of exactly `count` events of this kind.
+/// Exactly `count` events of this kind.
 pub(super) fn times(word: Word, count: u64) -> Criterion {
-    Criterion::WordCount {
-        word,
-        least: count,
-        most: count,
-    }
-}
-
-/// A torque in a band from a time on, N·m.
-pub(super) fn torque(from_s: f64, low_nm: f64, high_nm: f64, slack_nm: f64) -> Criterion {
-    Criterion::TorqueWithin {
-        from_s,
-        low_nm,
-        high_nm,
-        slack_nm,
-    }
+    word_count(word, count, count)
 }

@@ -1,17 +1,16 @@
 //! Inputs between two outcomes: velocities that just meet or just do not, and
 //! events at one instant.
 
-use super::tools::{TICK_S, at_tick, events, exactly, paper_joint, trial};
+use super::tools::{CASE, MOVING, TICK_S, constant, knots};
 use crate::stability::case::{Case, located};
-use crate::stability::criterion::{Counted, Criterion, Limits};
-use crate::stability::input::Shaft;
-use crate::stability::subject::Subject;
-use crepitus_model::Convention;
+use crate::stability::criteria::{EVENTS, count, events, exactly};
 use crepitus_scene::scene::Precision;
+
+type Knots = &'static [(f64, f64, f64)];
 
 // From the break on Ω grows so fast that the object just fails to catch up
 // with it, or just does; at 1 ± 1e-6 of that acceleration.
-const FAST: [&[(f64, f64, f64)]; 2] = [
+const FAST: [Knots; 2] = [
     &[
         (0.0, 1.0, 1.0),
         (0.001, 1.0, 1.0),
@@ -23,7 +22,7 @@ const FAST: [&[(f64, f64, f64)]; 2] = [
         (0.051, 1.008_066_430_641_043_2, 1.008_066_430_641_043_2),
     ],
 ];
-const SLOW: [&[(f64, f64, f64)]; 2] = [
+const SLOW: [Knots; 2] = [
     &[
         (0.0, 0.1, 0.1),
         (0.01, 0.1, 0.1),
@@ -36,9 +35,9 @@ const SLOW: [&[(f64, f64, f64)]; 2] = [
     ],
 ];
 
-const KNOT: &[(f64, f64, f64)] = &[(0.0, 1.0, 1.0), (0.001, 1.0, 1.0), (0.05, 1.005, 1.005)];
-const JUMP: &[(f64, f64, f64)] = &[(0.0, 1.0, 1.0), (0.001, 1.0, 0.5), (0.05, 0.5, 0.5)];
-const STILL: &[(f64, f64, f64)] = &[(0.0, 0.1, 0.1), (0.02, 0.0, 0.0), (0.05, 0.0, 0.0)];
+const KNOT: Knots = &[(0.0, 1.0, 1.0), (0.001, 1.0, 1.0), (0.05, 1.005, 1.005)];
+const JUMP: Knots = &[(0.0, 1.0, 1.0), (0.001, 1.0, 0.5), (0.05, 0.5, 0.5)];
+const STILL: Knots = &[(0.0, 0.1, 0.1), (0.02, 0.0, 0.0), (0.05, 0.0, 0.0)];
 
 /// The cases of this theme.
 pub(super) const CASES: &[Case] = &[
@@ -49,27 +48,17 @@ pub(super) const CASES: &[Case] = &[
         hard: "At the critical acceleration the velocities touch in a double root. A millionth to either side \
                decides whether there is a stick at all; f32 cannot distinguish them and is only shown.",
         source: "critical Ω̇ = 0.161328451492413 and 1.51421157788459 rad/s² by bisection with 40 digits",
-        long: false,
         must: |subject| located(subject) && subject.precision == Precision::F64,
-        trials: |subject| {
-            if subject.convention == Convention::Frozen {
-                return Vec::new();
-            }
+        trials: |_| {
             // Until just after the first match: 30.9 and 27.2 ms after the
             // break.
-            [(FAST, 0.0322), (SLOW, 0.0375)]
-                .iter()
-                .flat_map(|&([sticks, runs_away], duration_s)| {
-                    [(sticks, 2), (runs_away, 1)].map(|(knots, count)| {
-                        trial(
-                            paper_joint(subject.convention),
-                            at_tick(Shaft::Knots(knots), duration_s),
-                            [exactly(Counted::Events, count)],
-                        )
-                    })
-                })
-                .collect()
+            let [fast, outran] = FAST.map(|shaft| knots(shaft, 0.0322));
+            let [slow, crept_away] = SLOW.map(|shaft| knots(shaft, 0.0375));
+            [(fast, 2), (outran, 1), (slow, 2), (crept_away, 1)]
+                .map(|(input, number)| input.meets([exactly(EVENTS, number)]))
+                .into()
         },
+        ..MOVING
     },
     Case {
         id: "H31",
@@ -78,29 +67,16 @@ pub(super) const CASES: &[Case] = &[
         hard: "Two events at one instant: rounding puts the break on either side of the sample, and each side \
                could report it, or neither. The side may differ; the number must not.",
         source: "an event on a boundary is recorded once, whichever side it falls on",
-        long: false,
-        must: located,
-        trials: |subject: Subject| {
-            let settings = paper_joint(subject.convention);
-            let few = |least, most| Criterion::Count {
-                what: Counted::Events,
-                least,
-                most,
-            };
-            let within = events(Limits::both(TICK_S));
-            let knots = |knots, duration_s| at_tick(Shaft::Knots(knots), duration_s);
+        trials: |_| {
             vec![
-                trial(
-                    settings,
-                    at_tick(Shaft::Constant(1.0), 0.05),
-                    [within.clone()],
-                ),
-                trial(settings, knots(KNOT, 0.05), [within]),
+                constant(1.0, 0.05).meets([events(TICK_S)]),
+                knots(KNOT, 0.05).meets([events(TICK_S)]),
                 // The break by torque and the tear by the jump: one or both.
-                trial(settings, knots(JUMP, 0.002), [few(1, 2)]),
+                knots(JUMP, 0.002).meets([count(EVENTS, 1, 2)]),
                 // At Ts with a shaft that stands: it may hold or slip once.
-                trial(settings, knots(STILL, 0.05), [few(0, 2)]),
+                knots(STILL, 0.05).meets([count(EVENTS, 0, 2)]),
             ]
         },
+        ..CASE
     },
 ];

@@ -1,142 +1,139 @@
 //! Helpers shared by the files of the catalogue.
 
-use crate::stability::case::Trial;
-use crate::stability::criterion::{Counted, Criterion, Limits};
-use crate::stability::input::{Change, Fault, Input, Lost, Rendered, Shaft};
-use crepitus_model::{Convention, Parameters, Settings};
+use crate::stability::case::{Case, located};
+use crate::stability::criterion::Limits;
+use crate::stability::input::{
+    Fault, Input, Lost, Readings, Rendered, SceneRun, Shaft, Shake, What,
+};
+use crate::stability::subject::Subject;
+use crepitus_model::{Convention, Parameters};
 
 /// The device's tick, s.
 pub(super) const TICK_S: f64 = 5e-5;
 
 /// Tolerance of events when Ω is linear within every step, so that a solver
 /// that locates them only has rounding errors.
-pub(super) const LOCATED: Limits = Limits {
-    f64: 1e-12,
-    f32: 2e-5,
-};
+pub(super) const LOCATED: Limits = Limits(1e-12, 2e-5);
 
 /// Tolerance of events on a motion that is not linear within a step.
-pub(super) const SAMPLED: Limits = Limits {
-    f64: 1e-6,
-    f32: 2e-5,
+pub(super) const SAMPLED: Limits = Limits(1e-6, 2e-5);
+
+/// A case of all subjects, without its texts and trials.
+pub(super) const CASE: Case = Case {
+    id: "",
+    name: "",
+    title: "",
+    hard: "",
+    source: "",
+    long: false,
+    of: |_| true,
+    must: located,
+    trials: |_| Vec::new(),
 };
 
-/// J, kr, c, Tk, Ts under a convention.
-pub(super) fn joint(convention: Convention, values: [f64; 5]) -> Settings {
-    let [
-        inertia_kg_m2,
-        stiffness_nm_per_rad,
-        damping_nms_per_rad,
-        kinetic_torque_nm,
-        static_torque_nm,
-    ] = values;
-    Settings {
-        parameters: Parameters {
-            inertia_kg_m2,
-            stiffness_nm_per_rad,
-            damping_nms_per_rad,
-            kinetic_torque_nm,
-            static_torque_nm,
-        },
-        convention,
-        ..Settings::default()
-    }
+/// A case of `frozen` alone: of what the device renders.
+pub(super) const FROZEN: Case = Case {
+    of: is_frozen,
+    ..CASE
+};
+
+/// A case of an object that moves freely in a slip.
+pub(super) const MOVING: Case = Case {
+    of: |subject| !is_frozen(subject),
+    ..CASE
+};
+
+pub(super) fn is_frozen(subject: Subject) -> bool {
+    subject.convention == Convention::Frozen
 }
 
-/// The paper's parameters under a convention.
-pub(super) fn paper_joint(convention: Convention) -> Settings {
-    Settings {
-        convention,
-        ..Settings::default()
-    }
-}
+/// The plain encoder of the device.
+pub(super) const ENCODER: Readings = Readings {
+    rate_hz: 2e4,
+    lines: 512.0,
+    jitter: 0.0,
+    lost: 0.0,
+    first_count: 0,
+};
+
+/// A joint as the device renders it, without losses and commits.
+pub(super) const PLAIN: Rendered = Rendered {
+    counts: false,
+    lost: Lost::NONE,
+    commit_every: 0,
+    commits: Vec::new(),
+};
 
 /// A motion at the device's tick.
 pub(super) fn at_tick(shaft: Shaft, duration_s: f64) -> Input {
-    Input::Sampled {
-        shaft,
-        duration_s,
-        step_s: TICK_S,
-    }
+    Input::sampled(shaft, duration_s, TICK_S)
+}
+
+/// A constant speed, rad/s, at the device's tick.
+pub(super) fn constant(omega_rad_s: f64, duration_s: f64) -> Input {
+    at_tick(Shaft::Constant(omega_rad_s), duration_s)
+}
+
+/// A velocity between knots at the device's tick.
+pub(super) fn knots(knots: &'static [(f64, f64, f64)], duration_s: f64) -> Input {
+    at_tick(Shaft::Knots(knots), duration_s)
+}
+
+/// One step at this velocity, repeated.
+pub(super) fn repeated(omega_rad_s: f64, duration_s: f64, step_s: f64) -> Input {
+    Input::new(What::Repeated(omega_rad_s), duration_s, step_s)
+}
+
+/// A motion read by the encoder.
+pub(super) fn encoder(shaft: Shaft, duration_s: f64, readings: Readings) -> Input {
+    let step_s = 1.0 / readings.rate_hz;
+    Input::new(What::Encoder(shaft, readings), duration_s, step_s)
 }
 
 /// A motion at the device's tick, with a fault.
 pub(super) fn faulty(shaft: Shaft, fault: Fault, duration_s: f64) -> Input {
-    Input::Faulty {
-        shaft,
-        fault,
-        duration_s,
-        step_s: TICK_S,
-    }
+    Input::new(What::Faulty(shaft, fault), duration_s, TICK_S)
 }
 
 /// Commits at the device's tick.
 pub(super) fn changed(shaft: Shaft, duration_s: f64, changes: &[(f64, Parameters)]) -> Input {
-    let change = |&(at_s, parameters): &(f64, Parameters)| Change { at_s, parameters };
-    Input::ParameterChanges {
-        shaft,
-        changes: changes.iter().map(change).collect(),
-        duration_s,
-        step_s: TICK_S,
-    }
+    let what = What::ParameterChanges(shaft, changes.to_vec());
+    Input::new(what, duration_s, TICK_S)
 }
 
-/// A joint as the device renders it, without losses and commits.
-pub(super) fn rendered(shaft: Shaft, duration_s: f64) -> Rendered {
-    Rendered {
-        shaft,
-        counts: false,
-        lost: Lost::NONE,
-        commit_every: 0,
-        commits: Vec::new(),
-        duration_s,
-        step_s: TICK_S,
-    }
+/// A joint as the device renders it.
+pub(super) fn rendered(shaft: Shaft, duration_s: f64, rendered: Rendered) -> Input {
+    Input::new(What::Rendered(shaft, rendered), duration_s, TICK_S)
+}
+
+/// A hand that shakes the joint for two seconds.
+pub(super) fn shaking(shaft: Shaft, shake: Shake) -> Input {
+    Input::new(What::ShakingHand(shaft, shake), 2.0, TICK_S)
+}
+
+/// A scene whose torque stands in this column, for the reference, too, if it is compared.
+pub(super) fn scene(
+    what: &'static str,
+    text: &str,
+    column: &'static str,
+    is_compared: bool,
+) -> What {
+    What::Scene(SceneRun {
+        what,
+        text: text.to_owned(),
+        column,
+        is_compared,
+    })
 }
 
 /// φ = −A·cos(2π·f·t) with A = 45°: a knee from standstill.
 pub(super) fn knee(frequency_hz: f64) -> Shaft {
-    Shaft::Sine {
-        amplitude_rad: std::f64::consts::FRAC_PI_4,
-        frequency_hz,
-        phase_deg: -90.0,
-    }
+    Shaft::Sine(std::f64::consts::FRAC_PI_4, frequency_hz, -90.0)
 }
 
 /// φ = A·sin(2π·f·t).
 pub(super) fn sine(amplitude_rad: f64, frequency_hz: f64) -> Shaft {
-    Shaft::Sine {
-        amplitude_rad,
-        frequency_hz,
-        phase_deg: 0.0,
-    }
-}
-
-/// A trial.
-pub(super) fn trial<const N: usize>(
-    settings: Settings,
-    input: Input,
-    criteria: [Criterion; N],
-) -> Trial {
-    Trial {
-        settings,
-        input,
-        criteria: Vec::from(criteria),
-    }
-}
-
-/// Exactly this number of events.
-pub(super) fn exactly(what: Counted, count: u64) -> Criterion {
-    Criterion::Count {
-        what,
-        least: count,
-        most: count,
-    }
-}
-
-/// The true events.
-pub(super) fn events(within_s: Limits) -> Criterion {
-    Criterion::Events { within_s }
+    Shaft::Sine(amplitude_rad, frequency_hz, 0.0)
 }
 
 /// Cycle frequency at a constant speed, Hz: ωn/(2π + 2(λ − atan λ)), λ =

@@ -3,64 +3,56 @@
 
 use super::Lost;
 use crate::stability::text::{Plain, Time};
+use crate::vibration::loop_gain::CUFFS;
 use crepitus_scene::scene::Precision;
 use std::fmt;
 
+/// Effects of the scene.
+const EFFECTS: [&str; 11] = [
+    "crepitus",
+    "encoder",
+    "motor",
+    "drivetrain",
+    "backlash",
+    "cuff",
+    "limb",
+    "shell",
+    "reaction-mass",
+    "hand",
+    "vibration-actuator",
+];
+
 /// A device that vibrates.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ActuatorRun {
+pub(crate) struct ActuatorRun {
     /// Differences from the default plant, in words.
-    pub with: &'static str,
+    pub(crate) with: &'static str,
     /// The joint's preset.
-    pub preset: &'static str,
+    pub(crate) preset: &'static str,
     /// Speed that the hand intends, rad/s; 0 holds still.
-    pub speed_rad_s: f64,
+    pub(crate) speed_rad_s: f64,
     /// Additional and replaced settings of the scene: (effect, key, value as TOML).
-    pub keys: &'static [(&'static str, &'static str, &'static str)],
+    pub(crate) keys: &'static [(&'static str, &'static str, &'static str)],
     /// The gear has backlash.
-    pub backlash: bool,
+    pub(crate) backlash: bool,
     /// Disturbances, and their times, s.
-    pub upsets: &'static [(f64, Upset)],
-    /// Lost samples.
-    pub lost: Lost,
-    /// Duration, s.
-    pub duration_s: f64,
-    /// The step, s.
-    pub step_s: f64,
+    pub(crate) upsets: &'static [(f64, Upset)],
+    pub(crate) lost: Lost,
 }
 
-/// The loop that it closes, with a joint that sticks: see
+/// The loop that it closes on each of the cuffs, with a joint that sticks: see
 /// [`loop_gain`](crate::vibration::loop_gain).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ActuatorLoop {
+pub(crate) struct ActuatorLoop {
     /// Hands that hold the shell: each of these.
-    pub hands: &'static [&'static str],
-    /// Stiffnesses of the cuffs: each of these, N·m/rad.
-    pub cuffs_nm_per_rad: &'static [f64],
+    pub(crate) hands: &'static [&'static str],
     /// Ticks that everything is late besides.
-    pub late_ticks: u32,
-}
-
-impl fmt::Display for ActuatorLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let cuffs = self.cuffs_nm_per_rad.iter();
-        let cuffs: Vec<String> = cuffs.map(|cuff| Plain(*cuff).to_string()).collect();
-        write!(
-            f,
-            "the loop of a joint that sticks; hand: {}; cuff: {} N·m/rad",
-            self.hands.join(", "),
-            cuffs.join(", ")
-        )?;
-        match self.late_ticks {
-            0 => Ok(()),
-            ticks => write!(f, "; {ticks} ticks late"),
-        }
-    }
+    pub(crate) late_ticks: u32,
 }
 
 /// Disturbance of a device that vibrates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Upset {
+pub(crate) enum Upset {
     /// The hand lets go.
     LetsGo,
     /// The device is disarmed: both bridges are open.
@@ -73,43 +65,21 @@ pub enum Upset {
 
 impl ActuatorRun {
     /// Returns the run as a scene.
-    pub(in crate::stability) fn scene(&self, precision: Precision) -> String {
-        const EFFECTS: [&str; 11] = [
-            "crepitus",
-            "encoder",
-            "motor",
-            "drivetrain",
-            "backlash",
-            "cuff",
-            "limb",
-            "shell",
-            "reaction-mass",
-            "hand",
-            "vibration-actuator",
-        ];
-        let Self {
-            preset,
-            speed_rad_s,
-            duration_s,
-            step_s,
-            ..
-        } = self;
-        let knots: Vec<String> = self.speeds().iter().map(ToString::to_string).collect();
+    pub(crate) fn scene(&self, precision: Precision, duration_s: f64, step_s: f64) -> String {
         let mut text = format!(
             "version = 1\ntitle = \"shaken\"\nduration_s = {duration_s:?}\n[motion]\nkind = \"velocity-knots\"\n\
              from_deg = 40.0\nknots = [{}]\n[solver]\nkind = \"exact-events\"\nstep_s = {step_s:?}\nprecision = \
              \"{}\"\n",
-            knots.join(", "),
+            self.knots(duration_s).join(", "),
             precision.name()
         );
-        debug_assert!(speed_rad_s.is_finite());
         for effect in EFFECTS {
             if effect == "backlash" && !self.backlash {
                 continue;
             }
             text.push_str(&["[effects.", effect, "]\n"].concat());
             match effect {
-                "crepitus" => text.push_str(&["preset = \"", preset, "\"\n"].concat()),
+                "crepitus" => text.push_str(&["preset = \"", self.preset, "\"\n"].concat()),
                 "hand" => text.push_str("grip = \"firm\"\nlever_m = 0.3\n"),
                 _ => {}
             }
@@ -121,52 +91,52 @@ impl ActuatorRun {
     }
 
     /// The hand's velocity as knots.
-    fn speeds(&self) -> Vec<Knot> {
+    fn knots(&self, duration_s: f64) -> Vec<String> {
+        let knot = |at_s: f64, left: f64, right: f64| {
+            format!(
+                "{{ t_s = {at_s:?}, omega_left_rad_s = {left:?}, omega_right_rad_s = {right:?} }}"
+            )
+        };
         let mut now = self.speed_rad_s;
-        let mut knots = vec![Knot(0.0, now, now)];
+        let mut knots = vec![knot(0.0, now, now)];
         for (at_s, upset) in self.upsets {
             if let Upset::Speed(next) = upset {
-                knots.push(Knot(*at_s, now, *next));
+                knots.push(knot(*at_s, now, *next));
                 now = *next;
             }
         }
-        knots.push(Knot(self.duration_s, now, now));
+        knots.push(knot(duration_s, now, now));
         knots
     }
 }
 
-/// Time, and velocity on both sides of it.
-struct Knot(f64, f64, f64);
-
-impl fmt::Display for Knot {
+impl fmt::Display for ActuatorLoop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (hands, cuffs) = (self.hands.join(", "), CUFFS.map(|c| Plain(c).to_string()));
         write!(
             f,
-            "{{ t_s = {:?}, omega_left_rad_s = {:?}, omega_right_rad_s = {:?} }}",
-            self.0, self.1, self.2
-        )
+            "the loop of a joint that sticks; hand: {hands}; cuff: {} N·m/rad",
+            cuffs.join(", ")
+        )?;
+        match self.late_ticks {
+            0 => Ok(()),
+            ticks => write!(f, "; {ticks} ticks late"),
+        }
     }
 }
 
 impl fmt::Display for ActuatorRun {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { preset, with, .. } = self;
+        let speed = Plain(self.speed_rad_s);
         write!(
             f,
-            "{} at {} rad/s in the hand, with the actuator{}",
-            self.preset,
-            Plain(self.speed_rad_s),
-            self.with
+            "{preset} at {speed} rad/s in the hand, with the actuator{with}"
         )?;
         if self.backlash {
             f.write_str(", with backlash")?;
         }
-        if self.lost.ticks > 0 {
-            write!(
-                f,
-                ", {} samples in a row lost of every {}",
-                self.lost.ticks, self.lost.every
-            )?;
-        }
+        write!(f, "{}", self.lost)?;
         for (at_s, upset) in self.upsets {
             write!(f, ", from {} on ", Time(*at_s))?;
             match upset {

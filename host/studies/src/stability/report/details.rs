@@ -1,11 +1,11 @@
 //! Every case in words: why it is hard, exactly what goes in, what must hold,
 //! where it comes from, and all verdicts.
 
-use crate::stability::{Cell, Matrix, Row, Verdict};
+use super::look::look;
+use crate::stability::matrix::Counts;
+use crate::stability::{Cell, Matrix, Row};
 use crepitus_pages::plot::page::scrolling;
 use maud::{Markup, html};
-
-use super::look::Look;
 
 pub(super) fn cases(matrix: &Matrix) -> Markup {
     let alone = matrix.rows.len() == 1;
@@ -34,20 +34,16 @@ pub(super) fn cases(matrix: &Matrix) -> Markup {
 
 /// `40 hold, 2 degrade, 4 fail`.
 fn tally(row: &Row) -> String {
-    let count = |pick: fn(&Verdict) -> bool| {
-        let cells = row.cells.iter();
-        cells.filter(|cell| pick(&cell.verdict)).count()
-    };
-    let parts = [
-        (count(Verdict::holds), "hold"),
-        (count(|v| matches!(v, Verdict::Degrades { .. })), "degrade"),
-        (count(|v| matches!(v, Verdict::Fails { .. })), "fail"),
-    ];
-    let parts: Vec<String> = parts
-        .into_iter()
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, what)| format!("{count} {what}"))
-        .collect();
+    let counts = Counts::of(&row.cells);
+    let parts: Vec<String> = [
+        (counts.holds, "hold"),
+        (counts.degrades, "degrade"),
+        (counts.fails, "fail"),
+    ]
+    .into_iter()
+    .filter(|(count, _)| *count > 0)
+    .map(|(count, what)| format!("{count} {what}"))
+    .collect();
     parts.join(", ")
 }
 
@@ -85,17 +81,17 @@ fn verdicts(row: &Row) -> Markup {
 }
 
 fn line(cell: &Cell) -> Markup {
-    let look = Look::of(cell);
+    let (tone, _) = look(cell);
     html! {
         tr {
             th scope="row" { (cell.subject.convention.name()) }
             td { (cell.subject.solver.name()) }
             td { (cell.subject.precision.name()) }
             td {
-                span.swatch.(look.tone.ground.name) {} " "
+                span.swatch.(tone.ground.name) {} " "
                 (cell.verdict.to_string())
-                @if look.broken { b { " – must hold" } }
-                @else if look.must_hold { " (must)" }
+                @if cell.is_broken() { b { " – must hold" } }
+                @else if cell.must_hold { " (must)" }
             }
             td { (cell.detail) }
         }

@@ -1,13 +1,11 @@
 //! The matrix as a table: a pair of lines a case (f32 above f64), a column a
 //! rung, a colour and a number a cell.
 
+use super::columns::{Columns, cell};
+use super::{look, scale};
 use crate::stability::{Matrix, Row};
 use crepitus_pages::plot::page::scrolling;
 use maud::{Markup, html};
-
-use super::columns::{Columns, cell};
-use super::look::{self, Look};
-use super::scale;
 
 pub(super) fn table(matrix: &Matrix) -> Markup {
     let columns = Columns::of(matrix);
@@ -65,12 +63,12 @@ fn lines(row: &Row, columns: &Columns) -> Markup {
                         @for (i, rung) in group.rungs.iter().enumerate() {
                             @match cell(row, group.convention, *rung, *precision) {
                                 Some(found) => {
-                                    @let look = Look::of(found);
-                                    td .(look.tone.ground.name) .first[i == 0] .must[look.must_hold]
-                                        .broken[look.broken]
+                                    @let (tone, short) = look::look(found);
+                                    td .(tone.ground.name) .first[i == 0] .must[found.must_hold]
+                                        .broken[found.is_broken()]
                                         title={ (case.id) " " (case.name) ", " (look::words(found)) } {
-                                        (look.short)
-                                        @if look.flagged { sup { (look::FLAG) } }
+                                        (short)
+                                        @if found.verdict.is_flagged() { sup { (look::FLAG) } }
                                     }
                                 }
                                 None => td.none.first[i == 0] {},

@@ -1,9 +1,8 @@
 //! Style of a verdict: its colour, a sign that means the same without
 //! colour, a short number, and all of it in words.
 
-use crate::stability::{Cell, Failure, Rung, Verdict};
-
 use super::scale::{self, Tone};
+use crate::stability::{Cell, Failure, Rung, Verdict};
 
 /// Sign of a criterion without a number that is met, and of the reference.
 pub(super) const MET: &str = "✓";
@@ -14,64 +13,30 @@ pub(super) const FAILS: &str = "✗";
 /// Suffix of warnings of the run itself.
 pub(super) const FLAG: &str = "⚑";
 
-/// See the module.
-#[derive(Debug)]
-pub(super) struct Look {
-    pub(super) tone: Tone,
-    /// Sign and number.
-    pub(super) short: String,
-    pub(super) flagged: bool,
-    pub(super) must_hold: bool,
-    /// The cell must hold and does not.
-    pub(super) broken: bool,
-}
-
-impl Look {
-    pub(super) fn of(cell: &Cell) -> Self {
-        let (tone, short, flagged) = match &cell.verdict {
-            // The reference is what the others are measured with.
-            Verdict::Holds(_) if cell.subject.solver == Rung::Reference => {
-                (scale::holds(0.0), MET.to_owned(), false)
-            }
-            Verdict::Holds(margin) if margin.is_number() => {
-                (scale::holds(margin.share()), short(margin.measured), false)
-            }
-            Verdict::Holds(_) => (scale::holds(0.0), MET.to_owned(), false),
-            Verdict::Degrades { margin, flagged } => (
-                scale::DEGRADES,
-                format!("{DEGRADES}{}", short(margin.measured)),
-                *flagged,
-            ),
-            Verdict::Fails { what, flagged, .. } => {
-                (scale::FAILS, format!("{FAILS}{}", failure(*what)), *flagged)
-            }
-        };
-        Self {
-            tone,
-            short,
-            flagged,
-            must_hold: cell.must_hold,
-            broken: cell.must_hold && !cell.verdict.holds(),
+/// Colour of a cell, with sign and number.
+pub(super) fn look(cell: &Cell) -> (Tone, String) {
+    match &cell.verdict {
+        // The reference is what the others are measured with.
+        Verdict::Holds(margin) if margin.is_number() && cell.subject.solver != Rung::Reference => {
+            (scale::holds(margin.share()), short(margin.measured))
         }
+        Verdict::Holds(_) => (scale::holds(0.0), MET.to_owned()),
+        Verdict::Degrades { margin, .. } => {
+            let number = short(margin.measured);
+            (scale::DEGRADES, format!("{DEGRADES}{number}"))
+        }
+        Verdict::Fails { what, .. } => (scale::FAILS, format!("{FAILS}{}", failure(*what))),
     }
 }
 
 /// A cell in words, without the case.
 pub(super) fn words(cell: &Cell) -> String {
-    let subject = cell.subject;
     let must = if cell.must_hold { ", must hold" } else { "" };
-    let mut words = format!(
-        "{}, {}, {}{must}: {}",
-        subject.solver.name(),
-        subject.convention.name(),
-        subject.precision.name(),
-        cell.verdict
-    );
-    if !cell.detail.is_empty() {
-        words.push_str("; ");
-        words.push_str(&cell.detail);
-    }
-    words
+    let detail = match cell.detail.as_str() {
+        "" => String::new(),
+        detail => format!("; {detail}"),
+    };
+    format!("{}{must}: {}{detail}", cell.subject, cell.verdict)
 }
 
 fn failure(what: Failure) -> String {

@@ -1,17 +1,17 @@
 //! The page of the matrix.
 
-use crate::stability::Matrix;
-use crate::stability::story::Stories;
-use maud::{Markup, html};
-
 use super::{details, heat_map, look, scale};
-use crate::{StudyText, story};
+use crate::StudyText;
+use crate::stability::Matrix;
+use crate::stability::story::{Stories, figures};
 use crepitus_pages::plot::page;
+use maud::{Markup, html};
 
 const LAYOUT: &str = include_str!("page.css");
 
-pub(super) fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText) -> String {
-    let told = |paper| stories.map_or_else(Vec::new, |told| story::figures(told, paper));
+/// The report as one HTML page, complete in itself.
+pub fn html(matrix: &Matrix, stories: Option<&Stories>, text: &StudyText) -> String {
+    let told = |paper| stories.map_or_else(Vec::new, |told| figures(told, paper));
     let body = html! {
         header {
             p.kicker { "Crepitus · which hard cases hold" }

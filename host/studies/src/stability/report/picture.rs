@@ -1,14 +1,13 @@
 //! The matrix in brief as one SVG, for a document: the rungs that matter in
 //! the precision of the device, legible at the width of a page of text.
 
+use super::columns::{Columns, cell};
+use super::look;
+use super::scale::{self, Tone};
 use crate::stability::{Matrix, Row};
 use crepitus_pages::plot::palette::{AXIS, LEVEL, TEXT};
 use crepitus_pages::plot::{Drawing, Picture};
 use maud::{Markup, html};
-
-use super::columns::{Columns, cell};
-use super::look::{self, Look};
-use super::scale::{self, Tone};
 
 /// All in CSS pixels.
 const WIDTH: f64 = 820.0;
@@ -106,17 +105,16 @@ fn line(row: &Row, columns: &Columns, places: &Places, y: f64) -> Markup {
             tspan font-weight="600" { (case.id) } " " (case.name)
         }
         @for (found, x) in cells {
-            @let look = Look::of(found);
-            @let Tone { ground, text } = look.tone;
+            @let (Tone { ground, text }, short) = look::look(found);
             g fill=(text) {
                 title { (case.id) " " (look::words(found)) }
                 rect fill=(ground) x=(x) y=(y) width=(width) height=(height) {}
-                @if look.must_hold { path d=(format!("M{x} {y}h5l-5 5z")) {} }
-                text x=(x + (0.5 * places.width).floor()) y=(middle) font-size="11.5" text-anchor="middle" { (look.short) }
-                @if look.flagged {
+                @if found.must_hold { path d=(format!("M{x} {y}h5l-5 5z")) {} }
+                text x=(x + (0.5 * places.width).floor()) y=(middle) font-size="11.5" text-anchor="middle" { (short) }
+                @if found.verdict.is_flagged() {
                     text x=(x + width) y=(y + 8.0) font-size="11.5" text-anchor="end" { (look::FLAG) }
                 }
-                @if look.broken {
+                @if found.is_broken() {
                     rect fill="none" stroke=(TEXT) stroke-width="2.5" x=(x) y=(y) width=(width) height=(height) {}
                 }
             }

@@ -1,16 +1,17 @@
-//! A run of a joint, recorded so closely that a line through the points is
+//! A run of the paper's joint, recorded so closely that a line through the points is
 //! the run: torque, velocity of the object, breaks.
 
+use super::Line;
 use crate::sampling::{CHUNK_STEPS, Sampling};
 use crepitus_model::solver::Solver;
-use crepitus_model::{EventKind, Real, Settings, SettingsError, StickSlip, Validated};
+use crepitus_model::{Convention, EventKind, Real, Settings, SettingsError, StickSlip};
 use crepitus_plant::Motion;
 use crepitus_scene::any_joint::AnyJoint;
 
 /// Run that is to be recorded.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run<'a> {
-    pub(super) settings: &'a Validated<Settings>,
+    pub(super) convention: Convention,
     pub(super) solver: Solver,
     pub(super) motion: &'a Motion,
     pub(super) duration_s: f64,
@@ -21,51 +22,35 @@ pub(super) struct Run<'a> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Trace {
     /// Torque shown, N·m, against time, s; upright where it jumps.
-    pub(super) torque_nm: Vec<(f64, f64)>,
+    pub(super) torque_nm: Line,
     /// Velocity of the object, rad/s, against time, s.
-    pub(super) theta_dot_rad_s: Vec<(f64, f64)>,
+    pub(super) theta_dot_rad_s: Line,
     /// Times at which the object broke loose, s.
     pub(super) breaks_s: Vec<f64>,
 }
 
 impl Run<'_> {
-    /// Torque, velocity and breaks.
-    pub(super) fn trace(self) -> Result<Trace, SettingsError> {
-        self.go(true)
-    }
-
-    /// The breaks alone: a long run needs no memory for lines.
-    pub(super) fn breaks_s(self) -> Result<Vec<f64>, SettingsError> {
-        self.go(false).map(|trace| trace.breaks_s)
-    }
-
-    fn go(self, lines: bool) -> Result<Trace, SettingsError> {
+    /// Breaks, and lines if they are wanted: a long run needs no memory for them.
+    pub(super) fn trace(self, has_lines: bool) -> Result<Trace, SettingsError> {
+        let settings = Settings {
+            convention: self.convention,
+            ..Settings::default()
+        }
+        .validate()?;
         let omega_rad_s = self.motion.at(0.0).omega_rad_s;
-        let record = Record { run: self, lines };
-        let joint = AnyJoint::new(self.settings, self.solver, self.step_s, omega_rad_s)?;
-        Ok(record.trace(joint))
-    }
-}
-
-struct Record<'a> {
-    run: Run<'a>,
-    lines: bool,
-}
-
-impl Record<'_> {
-    fn trace(self, mut joint: AnyJoint<f64>) -> Trace {
-        let sampling = Sampling::new(self.run.motion, self.run.duration_s, self.run.step_s);
+        let mut joint = AnyJoint::<f64>::new(&settings, self.solver, self.step_s, omega_rad_s)?;
+        let sampling = Sampling::new(self.motion, self.duration_s, self.step_s);
         let mut trace = Trace::default();
         let mut walk = sampling.walk_from(0);
         let mut chunk = Vec::with_capacity(CHUNK_STEPS);
         let mut n = 0_u64;
-        if self.lines {
+        if has_lines {
             trace.row(0.0, &joint);
         }
         loop {
             walk.fill(&mut chunk, CHUNK_STEPS);
             if chunk.is_empty() {
-                return trace;
+                return Ok(trace);
             }
             for shaft in &chunk {
                 joint.step(shaft, |event| {
@@ -73,14 +58,14 @@ impl Record<'_> {
                     if event.kind == EventKind::Break {
                         trace.breaks_s.push(time_s);
                     }
-                    if self.lines {
+                    if has_lines {
                         push(&mut trace.torque_nm, time_s, event.torque_before_nm);
                         push(&mut trace.torque_nm, time_s, event.torque_after_nm);
                         trace.theta_dot_rad_s.push((time_s, event.theta_dot_rad_s));
                     }
                 });
                 n += 1;
-                if self.lines {
+                if has_lines {
                     trace.row(sampling.time_s(n, 0.0), &joint);
                 }
             }
@@ -97,7 +82,7 @@ impl Trace {
 }
 
 /// A level stretch keeps its two ends: most of a run is slip, at Tk.
-fn push(line: &mut Vec<(f64, f64)>, x: f64, y: f64) {
+fn push(line: &mut Line, x: f64, y: f64) {
     if let [.., (_, before), (last_x, last)] = line.as_mut_slice()
         && *before == y
         && *last == y
@@ -126,17 +111,15 @@ mod tests {
 
     #[test]
     fn a_steady_shaft_gives_the_cycle_of_the_closed_form() {
-        let settings = Settings::default().validate().unwrap();
-        let motion = Motion::constant(1.0);
         let run = Run {
-            settings: &settings,
+            convention: Convention::Frozen,
             solver: Solver::ExactEvents,
-            motion: &motion,
+            motion: &Motion::constant(1.0),
             duration_s: 1.0,
             step_s: 5e-5,
         };
-        let trace = run.trace().unwrap();
-        assert_eq!(trace.breaks_s, run.breaks_s().unwrap());
+        let trace = run.trace(true).unwrap();
+        assert_eq!(trace.breaks_s, run.trace(false).unwrap().breaks_s);
         let (natural, lambda) = (200.0, 0.1_f64);
         let expected = natural / (std::f64::consts::TAU + 2.0 * (lambda - lambda.atan()));
         assert!((frequency_hz(&trace.breaks_s) / expected - 1.0).abs() < 1e-9);

@@ -8,7 +8,7 @@
 //!
 //! where T₀ is its torque as that time begins.
 
-use crate::stability::input::SymptomRun;
+use crepitus_model::Real;
 use std::collections::VecDeque;
 
 /// Length of the sliding window for the net energy that a hand gets back at once, s.
@@ -36,18 +36,20 @@ pub(super) struct Energy {
 }
 
 impl Energy {
-    pub(super) fn new(stiffness_nm_per_rad: f64, run: &SymptomRun) -> Self {
+    /// The account of springs of this stiffness, N·m/rad, whose torque is late by these ticks, or
+    /// by any number up to them if that varies.
+    pub(super) fn new(stiffness: f64, (delay, varies): (usize, bool), step_s: f64) -> Self {
         Self {
-            stiffness: stiffness_nm_per_rad,
-            delay: run.delay_ticks,
-            varies: run.delay_varies,
-            late_nm: VecDeque::from(vec![0.0; run.delay_ticks + 1]),
+            stiffness,
+            delay,
+            varies,
+            late_nm: VecDeque::from(vec![0.0; delay + 1]),
             work_j: 0.0,
             granted_j: 0.0,
             peak_j: 0.0,
             fallen_j: 0.0,
             largest_nm: 0.0,
-            window: crepitus_model::Real::whole((NET_S / run.step_s).round()),
+            window: (NET_S / step_s).round().whole(),
             tick: 0,
             highest: VecDeque::from([(0, 0.0)]),
             net_j: 0.0,
@@ -112,30 +114,11 @@ impl Energy {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stability::input::Lost;
-    use crate::symptoms::Hand;
-
-    fn run(delay_ticks: usize) -> SymptomRun {
-        SymptomRun {
-            symptoms: Vec::new(),
-            hand: Hand::Constant {
-                from_deg: 0.0,
-                deg_s: 0.0,
-            },
-            counts: false,
-            commits: Vec::new(),
-            lost: Lost::NONE,
-            delay_ticks,
-            delay_varies: false,
-            duration_s: 1.0,
-            step_s: 1.0,
-        }
-    }
 
     #[test]
     fn a_sampled_spring_returns_what_it_stores_and_what_sampling_makes() {
         for delay in [0, 2] {
-            let mut energy = Energy::new(10.0, &run(delay));
+            let mut energy = Energy::new(10.0, (delay, false), 1.0);
             let mut angle = 0.0;
             let mut move_by = |energy: &mut Energy, by: f64, ticks: u32| {
                 for _ in 0..ticks {
@@ -159,7 +142,7 @@ mod tests {
 
     #[test]
     fn the_net_is_that_of_two_seconds() {
-        let mut energy = Energy::new(1.0, &run(0));
+        let mut energy = Energy::new(1.0, (0, false), 1.0);
         energy.tick(0.0, 1.0);
         // A joule a second for three seconds, and then as much put in.
         for _ in 0..3 {

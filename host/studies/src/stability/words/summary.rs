@@ -3,6 +3,7 @@
 use super::StabilityOutcome;
 use crate::machine;
 use crate::stability::cases_table::cases_table;
+use crate::stability::matrix::Counts;
 use crate::stability::{Case, Cell, Row, Rung, Verdict};
 use serde::{Serialize, Serializer};
 
@@ -28,16 +29,6 @@ pub(super) struct Summary<'m> {
     #[serde(serialize_with = "as_rows")]
     broken: Vec<CaseCell<'m>>,
     pub(super) wall_s: f64,
-}
-
-/// Numbers of cells: by verdict, those that must hold, and those that must hold and do not.
-#[derive(Clone, Copy, Default, Serialize)]
-pub(super) struct Counts {
-    pub(super) holds: usize,
-    pub(super) degrades: usize,
-    pub(super) fails: usize,
-    pub(super) must_hold: usize,
-    pub(super) broken: usize,
 }
 
 /// One case.
@@ -70,46 +61,18 @@ impl<'m> Summary<'m> {
     pub(super) fn new(tried: &StabilityOutcome<'m>) -> Self {
         let matrix = tried.matrix;
         let cases: Vec<CaseSummary> = matrix.rows.iter().map(CaseSummary::new).collect();
-        let mut counts = Counts::default();
-        for case in &cases {
-            counts.add(&case.counts);
-        }
         Self {
             version: SUMMARY_VERSION,
             crepitus_version: env!("CARGO_PKG_VERSION"),
             host: machine::host(),
             long: matrix.rows.iter().any(|row| row.case.long),
             subjects: tried.subjects,
-            cells: matrix.rows.iter().map(|row| row.cells.len()).sum(),
-            counts,
+            cells: matrix.cells().count(),
+            counts: Counts::of(matrix.cells().map(|(_, cell)| cell)),
             cases,
             broken: matrix.broken().collect(),
             wall_s: matrix.wall_s,
         }
-    }
-}
-
-impl Counts {
-    pub(super) fn of<'c>(cells: impl IntoIterator<Item = &'c Cell>) -> Self {
-        let mut counts = Self::default();
-        for cell in cells {
-            match cell.verdict {
-                Verdict::Holds(_) => counts.holds += 1,
-                Verdict::Degrades { .. } => counts.degrades += 1,
-                Verdict::Fails { .. } => counts.fails += 1,
-            }
-            counts.must_hold += usize::from(cell.must_hold);
-            counts.broken += usize::from(cell.must_hold && !cell.verdict.holds());
-        }
-        counts
-    }
-
-    fn add(&mut self, other: &Self) {
-        self.holds += other.holds;
-        self.degrades += other.degrades;
-        self.fails += other.fails;
-        self.must_hold += other.must_hold;
-        self.broken += other.broken;
     }
 }
 

@@ -1,19 +1,9 @@
 //! The matrix on a terminal: a line a case, and what must hold and does not.
 
 use super::summary::{CaseSummary, Summary};
-use crate::stability::{Matrix, Subject};
+use crate::stability::Matrix;
 use crepitus_pages::table::Table;
 use std::fmt::Write;
-
-/// `exact-events, frozen, f32`.
-pub(super) fn subject(subject: Subject) -> String {
-    format!(
-        "{}, {}, {}",
-        subject.solver.name(),
-        subject.convention.name(),
-        subject.precision.name()
-    )
-}
 
 /// A line a case.
 pub(super) fn table(matrix: &Matrix, summary: &Summary<'_>) -> String {
@@ -51,7 +41,7 @@ fn narrowest(case: &CaseSummary<'_>) -> String {
         let verdict = cell.verdict.to_string();
         let margin = verdict.trim_start_matches("holds ");
         let margin = margin.trim_start_matches('(').trim_end_matches(')');
-        format!("{margin}: {}", subject(cell.subject))
+        format!("{margin}: {}", cell.subject)
     });
     match (case.counts.broken, held) {
         (0, Some(held)) => held,
@@ -72,11 +62,7 @@ pub(super) fn broken(matrix: &Matrix) -> String {
         let _ = writeln!(
             text,
             "  {} {}, {}: {}\n      {}",
-            case.id,
-            case.name,
-            subject(cell.subject),
-            cell.verdict,
-            cell.detail
+            case.id, case.name, cell.subject, cell.verdict, cell.detail
         );
     }
     text
