@@ -41,15 +41,17 @@ pub fn page(faults: &[Fault]) -> String {
          Made by `{COMMAND}`, which applies one patch of [`tools/faults`](../../tools/faults) at a\n\
          time to a copy of the sources, runs the test that the patch names, and writes the result into the patch. A test that never fails\n\
          shows nothing; this page shows which test fails for what. Faults of the firmware are in images that the emulator runs: modelled\n\
-         silicon, not hardware. `cargo test -p crepitus-tools --test faults` compares this page with the patches.\n\n"
+         silicon, not hardware. `cargo test -p crepitus-tools --test faults` compares this page with the patches. Results of model and\n\
+         firmware are those of an earlier program, which ran more tests on each fault.\n\n"
     );
     let noticed = |fault: &&Fault| matches!(fault.result, Some(Outcome::Noticed(_)));
     // Writing to a String cannot fail.
     let _ = writeln!(
         text,
-        "{} planted faults: {} are noticed.\n",
+        "{} planted faults: {} are noticed, {} not tried.\n",
         faults.len(),
-        faults.iter().filter(noticed).count()
+        faults.iter().filter(noticed).count(),
+        faults.iter().filter(|fault| fault.result.is_none()).count()
     );
     let not_noticed = |fault: &&Fault| fault.result == Some(Outcome::NotNoticed);
     for fault in faults.iter().filter(not_noticed) {
@@ -112,7 +114,7 @@ mod tests {
         assert_eq!(lines[3], "silent: cannot be noticed: no change");
         let text = page(&all);
         for part in [
-            "4 planted faults: 1 are noticed.",
+            "4 planted faults: 1 are noticed, 1 not tried.",
             "- `open` is not noticed: a hole\n- `silent` is not noticed: no change\n",
             "## firmware\n\n| fault ",
             "| `pin` | \\|a sign\\| | model/a.rs | `laws: mirror` |\n\n## model\n",

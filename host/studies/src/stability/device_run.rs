@@ -62,7 +62,7 @@ impl DeviceRun<'_> {
     ) -> Result<Observation, SettingsError> {
         let step_s = self.sampling.step_s();
         let mut seen = Observation::of_steps(step_s);
-        self.follow::<F>(subject, |tick| {
+        self.follow::<F>(subject, &mut |tick| {
             for event in tick.events {
                 seen.tally.add(event);
             }
@@ -84,7 +84,7 @@ impl DeviceRun<'_> {
             steps: self.sampling.steps(),
             ..Observation::of_steps(self.sampling.step_s())
         };
-        let returned = self.shake::<F>(subject, delay_ticks, |tick, _| {
+        let returned = self.shake::<F>(subject, delay_ticks, &mut |tick, _| {
             seen.peak = seen.peak.max(tick.shown_nm.abs() / limit_nm);
         })?;
         seen.above_s = (seen.peak > 1.0 + BOUND_SLACK).then_some(0.0);
@@ -98,12 +98,12 @@ impl DeviceRun<'_> {
         self,
         subject: Subject,
         delay_ticks: usize,
-        mut on_tick: impl FnMut(&Tick<'_>, [f64; 2]),
+        on_tick: &mut dyn FnMut(&Tick<'_>, [f64; 2]),
     ) -> Result<Returned, SettingsError> {
         let exact = StepCoefficients::<f64>::new(&self.settings, self.sampling.step_s())?;
         let mut hand = EnergyObserver::new(&exact, delay_ticks);
         let mut unguarded = hand;
-        self.follow::<F>(subject, |tick| {
+        self.follow::<F>(subject, &mut |tick| {
             if tick.is_lost {
                 hand.tick_unseen(tick.travel_rad, tick.shown_nm);
                 unguarded.tick_unseen(tick.travel_rad, tick.model_nm);
@@ -122,19 +122,20 @@ impl DeviceRun<'_> {
     fn follow<F: Real>(
         self,
         subject: Subject,
-        on_tick: impl FnMut(&Tick<'_>),
+        on_tick: &mut dyn FnMut(&Tick<'_>),
     ) -> Result<(), SettingsError> {
         with_frozen_locator::<F, _>(subject.solver.of_a_device(), Watched(self, on_tick))
     }
 }
 
-struct Watched<'a, W>(DeviceRun<'a>, W);
+/// A run and what looks at its ticks: of no type of its own, which would make the run once for each.
+struct Watched<'a>(DeviceRun<'a>, &'a mut dyn FnMut(&Tick<'_>));
 
-impl<F: Real, W: FnMut(&Tick<'_>)> LocatorVisitor<F> for Watched<'_, W> {
+impl<F: Real> LocatorVisitor<F> for Watched<'_> {
     type Output = Result<(), SettingsError>;
 
     fn visit<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
-        let Self(run, mut on_tick) = self;
+        let Self(run, on_tick) = self;
         let (sampling, step_s) = (run.sampling, run.sampling.step_s());
         let mut view = View::<F>::new(&sampling, run.counts)?;
         let mut renderer = Renderer::<F, L>::of(
@@ -238,7 +239,7 @@ mod tests {
                         lost: Lost::NONE,
                         commits: (0, &[]),
                     };
-                    let returned = hand.shake::<f32>(firmware, delay_ticks, |_, _| {});
+                    let returned = hand.shake::<f32>(firmware, delay_ticks, &mut |_, _| {});
                     let returned = returned.unwrap();
                     let stroke_rad = p.static_torque_nm / p.stiffness_nm_per_rad;
                     let most = if counts {

@@ -95,7 +95,7 @@ impl Errors {
         truth: &Truth,
     ) -> Result<(), SettingsError> {
         let mut torques_nm = Vec::with_capacity(truth.torques_nm.len());
-        let found = own(follow::<F>(given, sampling, |n, torque_nm| {
+        let found = own(follow::<F>(given, sampling, &mut |n, torque_nm| {
             if n.is_multiple_of(truth.stride) {
                 torques_nm.push(torque_nm);
             }

@@ -25,7 +25,7 @@ pub fn timing(step_s: f64) -> Timing {
 pub fn follow<F: Real>(
     given: &Given,
     sampling: &Sampling<'_>,
-    on_tick: impl FnMut(u64, f64),
+    on_tick: &mut dyn FnMut(u64, f64),
 ) -> Result<Vec<SymptomEvent>, SettingsError> {
     let timing = timing(sampling.step_s());
     let run = Run {
@@ -39,16 +39,16 @@ pub fn follow<F: Real>(
     Ok(events.unwrap_or_default())
 }
 
-struct Run<'a, F, T> {
+struct Run<'a, F> {
     sampling: &'a Sampling<'a>,
     scale: Scale<F>,
-    on_tick: T,
+    on_tick: &'a mut dyn FnMut(u64, f64),
 }
 
-impl<F: Real, T: FnMut(u64, f64)> LawVisitor<F> for Run<'_, F, T> {
+impl<F: Real> LawVisitor<F> for Run<'_, F> {
     type Output = Vec<SymptomEvent>;
 
-    fn visit<E: DeviceEffect<F>>(mut self, mut law: E) -> Vec<SymptomEvent> {
+    fn visit<E: DeviceEffect<F>>(self, mut law: E) -> Vec<SymptomEvent> {
         let mut events = Vec::new();
         let mut walk = self.sampling.walk_from(0);
         let mut angle_rad = walk.now().0;

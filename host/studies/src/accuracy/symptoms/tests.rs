@@ -113,7 +113,8 @@ fn a_wrong_torque_and_a_missing_event_are_measured() {
     let sampling = Sampling::new(&motion, duration_s, 5e-5);
     let truth = Truth::new(&given, &motion, &sampling, 1).unwrap();
     let mut torques_nm = Vec::new();
-    let mut found = own(follow::<f64>(&given, &sampling, |_, nm| torques_nm.push(nm)).unwrap());
+    let mut found =
+        own(follow::<f64>(&given, &sampling, &mut |_, nm| torques_nm.push(nm)).unwrap());
     let errors = |found: &[_], torques_nm: &[f64]| {
         let mut errors = Errors::default();
         errors.compare(&sampling, &truth, found, torques_nm);

@@ -38,7 +38,7 @@ fn shake(
     (amplitude_rad, frequency_hz): (f64, f64),
     duration_s: f64,
     delay_ticks: usize,
-    on_tick: impl FnMut(&Tick<'_>, [f64; 2]),
+    on_tick: &mut dyn FnMut(&Tick<'_>, [f64; 2]),
 ) -> Result<Returned, SettingsError> {
     let motion = Motion::sine(amplitude_rad, frequency_hz, 0.0);
     let run = DeviceRun {
@@ -60,7 +60,7 @@ fn swept(delay_ticks: usize) -> Result<[Line; 2], SettingsError> {
     for i in 0..=40 {
         let share = 0.3 * 10_f64.powf(f64::from(i) / 40.0);
         let hand = (share * stroke_rad, SWEPT_HZ);
-        let returned = shake(hand, SWEPT_S, delay_ticks, |_, _| {})?;
+        let returned = shake(hand, SWEPT_S, delay_ticks, &mut |_, _| {})?;
         guarded.push((share, returned.guarded));
         unguarded.push((share, returned.unguarded));
     }
@@ -76,7 +76,7 @@ pub(super) fn story() -> Result<Story, SettingsError> {
     let [mut guarded_mj, mut unguarded_mj] = [Line::new(), Line::new()];
     let mut time_s = 0.0;
     // Far enough to break the stick at every stroke.
-    shake((5e-3, 20.0), SHOWN_S, 0, |tick, [shown_j, model_j]| {
+    shake((5e-3, 20.0), SHOWN_S, 0, &mut |tick, [shown_j, model_j]| {
         time_s += STEP_S;
         guarded_nm.push((time_s, tick.shown_nm));
         unguarded_nm.push((time_s, tick.model_nm));
