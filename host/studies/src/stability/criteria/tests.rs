@@ -7,6 +7,7 @@ use crate::stability::input::Shaft;
 use crate::stability::subject::{Rung, Subject};
 use crate::symptoms::SymptomEvent;
 use crate::true_events::TrueEvent;
+use crepitus_model::render::effects::symptom::Word;
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Sense};
 use crepitus_plant::Extremes;
