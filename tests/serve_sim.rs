@@ -125,12 +125,10 @@ fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
     assert_eq!(faults["fine"], false, "{report:#}");
     let found = faults["found"].as_str().unwrap();
     assert!(found.contains("lease"), "{found}");
-    // It continues without a restart. On a busy computer the next lease can end, too.
-    until("it is armed again", || {
-        assert!(served.run(&["clear-fault"]).status.success());
-        let armed = served.run(&["arm", "--zero", "--for", "200ms"]);
-        armed.status.success()
-    });
+    // It continues without a restart.
+    assert!(served.run(&["clear-fault"]).status.success());
+    let armed = served.run(&["arm", "--zero", "--for", "200ms"]);
+    assert!(armed.status.success(), "{}", stderr(&armed));
     // The file on disk is a valid recording.
     let output = served.run(&["report", file.to_str().unwrap()]);
     assert!(output.status.success(), "{}", stderr(&output));

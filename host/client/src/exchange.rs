@@ -13,7 +13,7 @@ use crepitus_protocol::management::{self, Action, ManagementRequest};
 use std::time::Duration;
 
 /// Interval of lease renewals: the lease of 250 ms survives four lost ones.
-const RENEW_EVERY: Duration = Duration::from_millis(50);
+pub(crate) const RENEW_EVERY: Duration = Duration::from_millis(50);
 
 /// Timeout and interval of retries while the device is busy.
 const BUSY_TIMEOUT: Duration = Duration::from_millis(500);

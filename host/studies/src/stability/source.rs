@@ -4,6 +4,7 @@ use super::guarded_joint::missing_step;
 use super::input::{Fault, Input, What};
 use crate::sampling::{CHUNK_STEPS, Sampling, Walk};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
+use crepitus_model::render::input_check::CATCH_UP_TICKS;
 use crepitus_model::{Real, SettingsError, ShaftStep};
 use crepitus_plant::Motion;
 use crepitus_plant::encoder::Encoder;
@@ -51,6 +52,7 @@ pub(super) fn source<'a, F: Real>(
                 reader: EncoderReader::new(&settings, step_s, first, omega)?,
                 jitter: readings.jitter,
                 lost: readings.lost,
+                missed: 0,
                 random: Rng::with_seed(1),
                 n: 0,
             })
@@ -131,6 +133,9 @@ struct Counted<'a, F> {
     offset: i32,
     jitter: f64,
     lost: f64,
+    /// Readings lost in a row. After more than the device catches up the joint begins anew, which
+    /// is another case.
+    missed: u32,
     random: Rng,
     n: u64,
 }
@@ -147,10 +152,13 @@ impl<F: Real> Source<F> for Counted<'_, F> {
             };
             let phi_rad = self.motion.at(self.sampling.time_s(self.n, late)).phi_rad;
             let count = self.encoder.count(phi_rad).wrapping_add(self.offset);
-            if self.lost > 0.0 && self.random.f64() < self.lost {
+            let may_miss = self.lost > 0.0 && self.missed < CATCH_UP_TICKS;
+            if may_miss && self.random.f64() < self.lost {
+                self.missed += 1;
                 self.reader.miss();
                 chunk.push(missing_step());
             } else {
+                self.missed = 0;
                 chunk.push(self.reader.read(count));
             }
         }

@@ -81,7 +81,7 @@ const SYMPTOMS: [(&str, u32); 7] = [
     ("range-limit", 1_290),
     ("lead-pipe", 120),
     ("cogwheel", 560),
-    ("spasticity", 500),
+    ("spasticity", 590),
     ("clasp-knife", 1_780),
     ("clonus", 330),
     ("texture", 1_850),

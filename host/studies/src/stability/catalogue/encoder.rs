@@ -103,7 +103,7 @@ pub(super) const CASES: &[Case] = &[
         hard: "The model assumes steps of equal length. A reading late in one step is early in the \
                next: the angle stays exact, the velocity gets noise that grows with the speed. A lost reading is \
                recovered by the next one, which has travelled twice as far: angle and time stay exact, and only \
-               the torque is held for a tick.",
+               the torque is held for a tick. At most three in a row are lost, as many as are caught up.",
         source: "closed form of the cycle; an angle that is counted is not lost with a reading",
         trials: |subject| {
             let mut trials = Vec::new();

@@ -56,6 +56,8 @@ pub(super) const CASES: &[Case] = &[
                of sampling, with the torque 0, 1 or 2 ticks late.",
         source: "docs/symptoms.md, The play: E ≤ T₀²/2σ + (½ + d)·σ·h·∫Ω² dt",
         trials: |_| {
+            // All of the spring is 1, but for rounding.
+            const MOST: f64 = 1.0 + 1e-6;
             let mut trials = Vec::new();
             for given in springs() {
                 for seed in 1..=4 {
@@ -64,7 +66,7 @@ pub(super) const CASES: &[Case] = &[
                             delay_ticks,
                             ..armed(&given, wander(60.0, 200.0, seed))
                         };
-                        trials.push(lasting(run, 4.0).meets([springs_return(1.0)]));
+                        trials.push(lasting(run, 4.0).meets([springs_return(MOST)]));
                     }
                 }
             }

@@ -1,5 +1,5 @@
-//! How a joint in a device gets a motion: through an encoder, with faulty or lost samples, with
-//! commits, or from a hand that gets its torque late.
+//! Ways in which a joint in a device gets a motion: through an encoder, with faulty or lost samples,
+//! with commits, or from a hand that gets its torque late.
 
 use crate::stability::text::{Plain, Time};
 use crepitus_model::{Parameters, Real};
