@@ -91,6 +91,8 @@ pub struct Start {
     pub count: i32,
     /// Initial value of comms' counters.
     pub counters: u32,
+    /// Number of times that both controllers have been started before.
+    pub starts: u16,
 }
 
 /// The two controllers with a leg.
@@ -159,7 +161,7 @@ impl Board {
         let drive = Drive::new(&drive::Boot {
             self_test: SelfTest::default(),
             identity: identity(Role::Drive, ResetCause::Power),
-            start: 1,
+            start: start.starts.wrapping_add(1),
             counter: start.count.cast_unsigned(),
             tick: start.tick,
             sequence: start.sequence,
@@ -168,7 +170,7 @@ impl Board {
         let comms = Comms::new(&comms::Boot {
             self_test: SelfTest::default(),
             identity: identity(Role::Comms, ResetCause::Power),
-            start: 1,
+            start: start.starts.wrapping_add(1),
             entropy: start.seed,
             saved: start.saved,
             counters: start.counters,
@@ -184,7 +186,7 @@ impl Board {
             comms_line: EnableLine::default(),
             drive_health: Health::Runs,
             comms_health: Health::Runs,
-            starts: [2; 2],
+            starts: [start.starts.wrapping_add(2); 2],
             drive_crash: None,
             comms_crash: None,
             bridge: Bridge::Float,

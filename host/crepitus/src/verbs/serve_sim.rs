@@ -73,7 +73,14 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let scene = shipped::scene(&arguments.scene, &Overrides::default())?;
     let mut device: Box<dyn CabledDevice> = match arguments.device {
         Kind::Sim => {
-            Box::new(VirtualDevice::of(&scene, &Start::default()).map_err(Failure::input)?)
+            // A device counts its starts. Without that a recording that goes on with another process
+            // could begin at the very tick of the first one, and be taken for the same samples twice.
+            let [starts, ..] = std::process::id().to_le_bytes();
+            let start = Start {
+                starts: starts.into(),
+                ..Start::default()
+            };
+            Box::new(VirtualDevice::of(&scene, &start).map_err(Failure::input)?)
         }
         Kind::Emulated => {
             let on_build = || to_stderr("building firmware, if it is not up to date");

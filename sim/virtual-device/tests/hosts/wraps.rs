@@ -21,6 +21,7 @@ fn counters_wrap_under_torque_and_between_commits() {
             sequence: u16::MAX - 1_000,
             count,
             counters: u32::MAX - 10,
+            starts: u16::MAX - 1,
         };
         let mut host = Host::new(&examination(), &start);
         host.number = u32::from(u16::MAX) - 5;
