@@ -5,7 +5,7 @@ mod support;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use support::{WEIGHT_IN_THE_BRACE, names, refuses, run, stderr, stdout};
+use support::{WEIGHT_IN_THE_BRACE, names, refuses, run, stderr, stdout, words};
 
 /// Arguments for the weight that hangs on the arm of the scene `weight-on-the-arm`.
 const WEIGHT: [&str; 4] = ["--weight-kg", "0.61", "--lever-m", "0.25"];
@@ -99,16 +99,7 @@ fn a_hanging_weight_is_found_written_and_applied() {
 
 #[test]
 fn a_swinging_weight_shows_friction() {
-    let device = [
-        "--yes",
-        "--device",
-        "sim",
-        "--scene",
-        "weight-in-the-brace",
-        "--for",
-        "8s",
-        "--json",
-    ];
+    let device = words("--yes --device sim --scene weight-in-the-brace --for 8s --json");
     let done = calibrate("friction", &[&WEIGHT_IN_THE_BRACE, &device]);
     assert!(done.status.success(), "{}", stderr(&done));
     let json: Value = serde_json::from_str(&stdout(&done)).unwrap();
@@ -261,20 +252,13 @@ mod on_a_served_device {
     use std::thread::sleep;
     use std::time::{Duration, Instant};
     use support::served::Served;
-    use support::stdout;
+    use support::{stdout, words};
 
     /// A device whose weight is being lifted by `calibrate`, and its parameters from before.
     fn lifting(served: &Served) -> (Child, Value) {
         assert!(served.run(&["zero", "--device", "knee"]).status.success());
         let before = parameters(served);
-        let steps = [
-            "calibrate",
-            "--device",
-            "knee",
-            "--yes",
-            "--steps",
-            "torque-constant",
-        ];
+        let steps = words("calibrate --device knee --yes --steps torque-constant");
         let child = served
             .command(&[&steps[..], &WEIGHT].concat())
             .stdin(Stdio::null())

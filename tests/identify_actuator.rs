@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use support::{refuses, repository, run, stderr, stdout};
+use support::{done, refuses, repository, run, stderr, stdout, words};
 
 /// An actuator that is none of the data sheet.
 const OURS: Simulated = Simulated {
@@ -139,65 +139,21 @@ fn what_is_refused_has_its_exit_code_and_its_reason() {
         },
         &csv,
     );
-    let csv = csv.to_str().unwrap();
-    let refused = run(&["identify-actuator", "--from", csv, "--moving-mass-g", "52"]);
-    assert_eq!(refused.status.code(), Some(1));
-    assert!(
-        stderr(&refused).contains("the coil is open"),
-        "{}",
-        stderr(&refused)
-    );
-    for (arguments, text) in [
-        (vec!["--from", csv], "--moving-mass-g"),
-        (vec!["--from", csv, "--moving-mass-g", "-1"], "above 0 g"),
-        (vec!["--from", csv, "--added-mass-g", "20"], "--from-added"),
-        (
-            vec!["--from", csv, "--moving-mass-g", "52", "--to-hz", "5"],
-            "chirp",
-        ),
-        (
-            vec![
-                "--from",
-                csv,
-                "--moving-mass-g",
-                "52",
-                "--mass-tolerance",
-                "50",
-            ],
-            "0 to 20 %",
-        ),
-        (
-            vec!["--from", "nowhere.csv", "--moving-mass-g", "52"],
-            "nowhere.csv",
-        ),
-        (vec!["--from", "Cargo.toml", "--moving-mass-g", "52"], "t_s"),
+    let from = format!("identify-actuator --from {}", csv.display());
+    let weighed = format!("{from} --moving-mass-g 52");
+    refuses(&words(&weighed), 1, "the coil is open");
+    for (line, text) in [
+        (from.clone(), "--moving-mass-g"),
+        (format!("{from} --moving-mass-g -1"), "above 0 g"),
+        (format!("{from} --added-mass-g 20"), "--from-added"),
+        (format!("{weighed} --to-hz 5"), "chirp"),
+        (format!("{weighed} --mass-tolerance 50"), "0 to 20 %"),
+        (weighed.replace("open.csv", "none.csv"), "none.csv"),
     ] {
-        refuses(&[&["identify-actuator"][..], &arguments].concat(), 2, text);
+        refuses(&words(&line), 2, text);
     }
-}
-
-#[test]
-fn apply_sets_the_parameters_of_the_device() {
-    let folder = tempfile::tempdir().unwrap();
-    let csv = folder.path().join("bench.csv");
-    recorded(&OURS, &csv);
-    let csv = csv.to_str().unwrap();
-    let done = run(&[
-        "--json",
-        "identify-actuator",
-        "--from",
-        csv,
-        "--moving-mass-g",
-        "52",
-        "--device",
-        "sim",
-        "--apply",
-    ]);
-    assert!(done.status.success(), "{}", stderr(&done));
-    let printed: Value = serde_json::from_str(&stdout(&done)).unwrap();
-    assert!(printed["revision"].as_u64().unwrap() > 1, "{printed}");
-    let in_use = &value(&printed["identified"], "vibration-actuator.resonance_hz")["in_use"];
-    assert_eq!(in_use.as_f64(), Some(35.0));
+    let no_table = "identify-actuator --from Cargo.toml --moving-mass-g 52";
+    refuses(&words(no_table), 2, "t_s");
 }
 
 #[cfg(target_os = "linux")]
@@ -236,18 +192,12 @@ fn the_device_has_what_was_applied() {
 fn a_simulated_device_plays_the_chirp_and_its_actuator_is_found() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    let device = ["--device", "sim", "--scene", "actuator-in-a-vice"];
-    let verb = [
-        "--json",
-        "identify-actuator",
-        "--zero",
-        "--moving-mass-g",
-        "52",
-        "--apply",
-    ];
-    let done = run(&[&verb[..], &["--out", out.to_str().unwrap()], &device].concat());
-    assert!(done.status.success(), "{}{}", stdout(&done), stderr(&done));
-    let printed: Value = serde_json::from_str(&stdout(&done)).unwrap();
+    let printed = done(&format!(
+        "--json identify-actuator --zero --moving-mass-g 52 --apply --out {} --device sim \
+         --scene actuator-in-a-vice",
+        out.display()
+    ));
+    let printed: Value = serde_json::from_str(&printed).unwrap();
     assert!(printed["revision"].as_u64().unwrap() > 1);
     // What the scene's actuator is, which the device does not know.
     for (name, truth) in [
@@ -268,15 +218,11 @@ fn a_simulated_device_plays_the_chirp_and_its_actuator_is_found() {
     }
     // The recording gives the same again.
     let csv = out.join("measured.csv");
-    let again = run(&[
-        "--json",
-        "identify-actuator",
-        "--from",
-        csv.to_str().unwrap(),
-        "--moving-mass-g",
-        "52",
-    ]);
-    let again: Value = serde_json::from_str(&stdout(&again)).unwrap();
+    let again = done(&format!(
+        "--json identify-actuator --from {} --moving-mass-g 52",
+        csv.display()
+    ));
+    let again: Value = serde_json::from_str(&again).unwrap();
     let found = |printed: &Value, name: &str| {
         value(&printed["identified"], name)["value"]
             .as_f64()
@@ -300,39 +246,16 @@ fn a_simulated_device_plays_the_chirp_and_its_actuator_is_found() {
 
 #[test]
 fn a_device_whose_actuator_is_off_or_too_weak_for_the_chirp_says_so() {
-    let asked = |more: &[&str]| {
-        let verb = [
-            "identify-actuator",
-            "--zero",
-            "--moving-mass-g",
-            "52",
-            "--device",
-            "sim",
-        ];
-        run(&[&verb[..], more].concat())
-    };
-    let off = asked(&[]);
-    assert_eq!(off.status.code(), Some(1));
-    assert!(
-        stderr(&off).contains("vibration-actuator.gain=0"),
-        "{}",
-        stderr(&off)
-    );
-    let loud = asked(&["--scene", "actuator-in-a-vice", "--amplitude-v", "4"]);
-    assert_eq!(loud.status.code(), Some(1));
-    assert!(
-        stderr(&loud).contains("twice its stroke"),
-        "{}",
-        stderr(&loud)
-    );
-    // Nobody says that the mass is fastened: the standard input is empty.
-    let alone = asked(&["--scene", "actuator-in-a-vice", "--added-mass-g", "30"]);
-    assert_eq!(alone.status.code(), Some(1));
-    assert!(
-        stderr(&alone).contains("no second chirp"),
-        "{}",
-        stderr(&alone)
-    );
+    let off = "identify-actuator --zero --moving-mass-g 52 --device sim";
+    refuses(&words(off), 1, "vibration-actuator.gain=0");
+    for (more, part) in [
+        ("--amplitude-v 4", "twice its stroke"),
+        // Nobody says that the mass is fastened: the standard input is empty.
+        ("--added-mass-g 30", "no second chirp"),
+    ] {
+        let line = format!("{off} --scene actuator-in-a-vice {more}");
+        refuses(&words(&line), 1, part);
+    }
 }
 
 /// The second run found the fault of the first, and awaited a chirp that nobody plays.
@@ -346,23 +269,10 @@ fn a_broken_coil_ends_every_run_of_the_same_device() {
     fs::write(&file, broken).unwrap();
     let served = support::served::Served::with_scene(file.to_str().unwrap());
     // The device believes in a coil that is not there.
-    let set = [
-        "params",
-        "set",
-        "vibration-actuator.render=on",
-        "vibration-actuator.gain=0",
-        "--device",
-        "knee",
-    ];
+    let set =
+        words("params set vibration-actuator.render=on vibration-actuator.gain=0 --device knee");
     assert!(served.command(&set).status().unwrap().success());
-    let verb = [
-        "identify-actuator",
-        "--zero",
-        "--moving-mass-g",
-        "52",
-        "--device",
-        "knee",
-    ];
+    let verb = words("identify-actuator --zero --moving-mass-g 52 --device knee");
     for _ in 0..2 {
         let mut child = (served.command(&verb))
             .stderr(std::process::Stdio::piped())

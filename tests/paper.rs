@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use support::{csv, names, run, stderr, stdout};
+use support::{csv, done, names, run, stderr, stdout, words};
 
 /// Runs a scene that ships for a second into `out`, with more arguments; its JSON.
 fn played(scene: &str, out: &Path, more: &[&str]) -> Value {
@@ -108,17 +108,12 @@ fn measured_curves_lie_over_those_of_the_run() {
     let file = home.path().join("bench.csv");
     played("slow-examination", &first, &[]);
     bench(&first, &file, 0.02);
-    let overlay = [
-        "--overlay",
-        file.to_str().unwrap(),
-        "--overlay-columns",
-        "t_s=time,torque_nm=T,angle_deg=knee",
-        "--overlay-scale",
-        "torque_nm=-0.001",
-        "--overlay-offset",
-        "angle_deg=-3",
-        "--pictures",
-    ];
+    let overlay = format!(
+        "--overlay {} --overlay-columns t_s=time,torque_nm=T,angle_deg=knee \
+         --overlay-scale torque_nm=-0.001 --overlay-offset angle_deg=-3 --pictures",
+        file.display()
+    );
+    let overlay = words(&overlay);
     let printed = played("slow-examination", &second, &overlay);
     let found = printed["overlay"].as_array().unwrap();
     assert_eq!(found.len(), 2, "{found:?}");
@@ -353,34 +348,16 @@ fn a_recording_can_be_heard_and_compared() {
     let home = tempfile::tempdir().unwrap();
     let path = |name: &str| home.path().join(name).to_str().unwrap().to_owned();
     let recording = path("knee");
-    let recorded = run(&[
-        "record", "--device", "sim", "--for", "1s", "--arm", "--zero", "--", &recording,
-    ]);
-    assert_eq!(recorded.status.code(), Some(0), "{}", stderr(&recorded));
-    let exported = run(&[
-        "export",
-        &recording,
-        "--format",
-        "csv",
-        "--out",
-        &path("r.csv"),
-    ]);
-    assert_eq!(exported.status.code(), Some(0), "{}", stderr(&exported));
-    let output = run(&[
-        "report",
-        &recording,
-        "--json",
-        "--out",
-        &path("report"),
-        "--wav",
-        &path("r.wav"),
-        "--overlay",
-        &path("r.csv"),
-        "--overlay-columns",
-        "torque_nm=model_torque_nm,angle_rad=angle_rad",
-    ]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let printed: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    done(&format!(
+        "record --device sim --for 1s --arm --zero -- {recording}"
+    ));
+    let [csv, wav, out] = ["r.csv", "r.wav", "report"].map(path);
+    done(&format!("export {recording} --format csv --out {csv}"));
+    let printed = done(&format!(
+        "report {recording} --json --out {out} --wav {wav} --overlay {csv} \
+         --overlay-columns torque_nm=model_torque_nm,angle_rad=angle_rad"
+    ));
+    let printed: Value = serde_json::from_str(&printed).unwrap();
     for difference in printed["overlay"].as_array().unwrap() {
         // Torques are written with the digits of an f32.
         assert_eq!(difference["outside"], 0, "{difference}");
@@ -393,5 +370,5 @@ fn a_recording_can_be_heard_and_compared() {
         printed["sound"]["full_scale_nm"].as_f64().unwrap() > 0.0,
         "{printed}"
     );
-    assert!(hound::WavReader::open(path("r.wav")).unwrap().duration() > 20_000);
+    assert!(hound::WavReader::open(wav).unwrap().duration() > 20_000);
 }

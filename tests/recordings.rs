@@ -4,7 +4,7 @@ mod support;
 
 use std::fs;
 use std::path::Path;
-use support::{crepitus, csv, names, run, shared, stderr, summary};
+use support::{crepitus, csv, done, names, run, run_line, shared, stderr, summary};
 
 /// A scene that plays `file`.
 fn scene(file: &str, duration_s: f64, columns: (&str, &str)) -> String {
@@ -134,12 +134,7 @@ fn a_bad_recording_is_named_and_nothing_is_written() {
         let path = home.path().join("scene.toml");
         fs::write(&path, scene("knee.csv", 0.4, ("time_s", "knee_deg"))).unwrap();
         let out = home.path().join("out");
-        let output = run(&[
-            "run",
-            path.to_str().unwrap(),
-            "--out",
-            out.to_str().unwrap(),
-        ]);
+        let output = run_line(&format!("run {} --out {}", path.display(), out.display()));
         let message = stderr(&output);
         assert_eq!(output.status.code(), Some(2), "{message}\n{content}");
         assert!(message.contains(part), "{message:?} does not say {part:?}");
@@ -178,13 +173,7 @@ fn a_repeated_gait_cycle_runs_again_bit_for_bit() {
     fs::write(&path, text).unwrap();
     let [first, second] = ["first", "second"].map(|name| home.path().join(name));
     let play = |scene: &Path, out: &Path| {
-        let output = run(&[
-            "run",
-            scene.to_str().unwrap(),
-            "--out",
-            out.to_str().unwrap(),
-        ]);
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        done(&format!("run {} --out {}", scene.display(), out.display()));
     };
     play(&path, &first);
     play(&first.join("summary.json"), &second);

@@ -6,7 +6,7 @@ mod support;
 use serde_json::Value;
 use std::fmt::Write;
 use std::fs;
-use support::{csv, number, repository, run, stderr};
+use support::{csv, done, number, repository};
 
 /// The case as a scene.
 fn scene(case: &Value) -> String {
@@ -74,13 +74,7 @@ fn reference_cases_hold_through_the_files() {
         let path = home.path().join("case.toml");
         fs::write(&path, scene(&case)).unwrap();
         let out = home.path().join("out");
-        let output = run(&[
-            "run",
-            path.to_str().unwrap(),
-            "--out",
-            out.to_str().unwrap(),
-        ]);
-        assert!(output.status.success(), "{name}: {}", stderr(&output));
+        done(&format!("run {} --out {}", path.display(), out.display()));
         let (_, events) = csv(&out.join("events.csv"));
         let expected = case["events"].as_array().unwrap();
         assert_eq!(events.len(), expected.len(), "{name}");

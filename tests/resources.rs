@@ -11,21 +11,14 @@ use crepitus_recording::{Begin, Metadata, Recorder};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use support::{crepitus, names, stderr};
+use support::{crepitus, names, stderr, words};
 
 /// Highest resident memory of a run of so many simulated seconds, kB.
 fn peak_of_run_kb(seconds: u32) -> u64 {
     let home = tempfile::tempdir().unwrap();
-    let duration = format!("duration_s={seconds}");
-    let out = home.path().join("out");
-    peak_kb(&[
-        "run",
-        "slow-examination",
-        "--set",
-        &duration,
-        "--out",
-        out.to_str().unwrap(),
-    ])
+    let to = home.path().join("out").display().to_string();
+    let line = format!("run slow-examination --set duration_s={seconds} --out {to}");
+    peak_kb(&words(&line))
 }
 
 /// Longest time of a command.
@@ -158,13 +151,7 @@ fn a_full_disk_is_an_error_and_leaves_nothing() {
 fn an_interrupt_leaves_nothing() {
     let home = tempfile::tempdir().unwrap();
     let mut child = crepitus()
-        .args([
-            "run",
-            "slow-examination",
-            "--set",
-            "duration_s=100000",
-            "--out",
-        ])
+        .args(words("run slow-examination --set duration_s=100000 --out"))
         .arg(home.path().join("out"))
         .stdout(Stdio::null())
         .stderr(Stdio::null())

@@ -8,7 +8,9 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
-use support::{crepitus, csv, is_row, names, number, run, stderr, stdout, summary, table};
+use support::{
+    crepitus, csv, done, is_row, names, number, run, stderr, stdout, summary, table, words,
+};
 
 fn stability(out: &Path, arguments: &[&str]) -> Output {
     let out = ["--out", out.to_str().unwrap()];
@@ -136,27 +138,9 @@ fn the_first_screen_has_the_answer_and_no_more_than_a_screen_holds() {
 #[test]
 fn parts_of_the_matrix_can_be_asked_for() {
     let home = tempfile::tempdir().unwrap();
-    let output = stability(
-        home.path(),
-        &[
-            "--json",
-            "--pictures",
-            "--case",
-            "h02",
-            "--case",
-            "H05",
-            "--case",
-            "H05",
-            "--solver",
-            "exact-events",
-            "--solver",
-            "rk4",
-            "--convention",
-            "physical",
-            "--precision",
-            "f32",
-        ],
-    );
+    let parts = "--json --pictures --case h02 --case H05 --case H05 --solver exact-events \
+                 --solver rk4 --convention physical --precision f32";
+    let output = stability(home.path(), &words(parts));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let printed: Value = serde_json::from_str(&stdout(&output)).expect("JSON");
     let cases = printed["summary"]["cases"].as_array().unwrap();
@@ -363,12 +347,6 @@ fn the_map_of_stiffness_keeps_what_theory_promises() {
     // Anybody can run a cell.
     let scene = out.join("scene.toml");
     let ran = home.path().join("ran");
-    let output = run(&[
-        "run",
-        scene.to_str().unwrap(),
-        "--out",
-        ran.to_str().unwrap(),
-    ]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    done(&format!("run {} --out {}", scene.display(), ran.display()));
     assert!(summary(&ran)["plant_energy"]["residual_relative"].is_number());
 }

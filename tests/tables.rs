@@ -4,21 +4,16 @@ mod support;
 
 use serde_json::Value;
 use std::fs;
-use support::{is_row, run, stderr, stdout, summary, table};
+use support::{done, is_row, summary, table};
 
 #[test]
 fn effects_are_the_same_in_both() {
     let home = tempfile::tempdir().unwrap();
     let out = home.path().join("study");
-    let output = run(&[
-        "effects",
-        "fig8-4-cuff",
-        "--set",
-        "duration_s=0.2",
-        "--out",
-        out.to_str().unwrap(),
-    ]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let to = out.display();
+    done(&format!(
+        "effects fig8-4-cuff --set duration_s=0.2 --out {to}"
+    ));
     let (header, rows) = table(&out.join("effects.csv"));
     let summary = summary(&out);
     let objects = summary["rows"].as_array().unwrap();
@@ -37,16 +32,8 @@ fn effects_are_the_same_in_both() {
 fn cells_of_the_matrix_are_the_same_in_both() {
     let home = tempfile::tempdir().unwrap();
     let out = home.path().join("study");
-    let output = run(&[
-        "stability",
-        "--case",
-        "H01",
-        "--case",
-        "H05",
-        "--out",
-        out.to_str().unwrap(),
-    ]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let to = out.display();
+    done(&format!("stability --case H01 --case H05 --out {to}"));
     let (header, rows) = table(&out.join("cases.csv"));
     for case in summary(&out)["cases"].as_array().unwrap() {
         let narrowest = &case["narrowest"];
@@ -59,21 +46,11 @@ fn cells_of_the_matrix_are_the_same_in_both() {
 #[test]
 fn samples_are_the_same_in_both() {
     let home = tempfile::tempdir().unwrap();
-    let stream = |arguments: &[&str]| {
-        let output = run(&[
-            &[
-                "stream", "--device", "sim", "--for", "100ms", "--rate", "1000", "--arm", "--zero",
-            ],
-            arguments,
-        ]
-        .concat());
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        stdout(&output)
-    };
+    let stream = "stream --device sim --for 100ms --rate 1000 --arm --zero";
     let file = home.path().join("samples.csv");
-    fs::write(&file, stream(&[])).unwrap();
+    fs::write(&file, done(stream)).unwrap();
     let (header, rows) = table(&file);
-    let lines = stream(&["--json"]);
+    let lines = done(&format!("{stream} --json"));
     assert!(rows.len() >= 80 && rows.len() == lines.lines().count());
     for (line, row) in lines.lines().zip(&rows) {
         let object: Value = serde_json::from_str(line).unwrap();

@@ -8,7 +8,7 @@ mod client;
 mod support;
 
 use client::{Client as UsbIp, setup};
-use crepitus_client::{Client, Event, Management, Transport, TransportError};
+use crepitus_client::{Client, Event, Transport, TransportError};
 use crepitus_protocol::parameters::id;
 use crepitus_protocol::usb::{PRODUCT_ID, VENDOR_ID};
 use serde_json::Value;
@@ -130,18 +130,6 @@ impl Driver {
         })
     }
 
-    /// [`open`](Self::open), once the server has noticed that the last client has gone.
-    fn open_when_free(address: SocketAddr) -> Self {
-        let begun = Instant::now();
-        loop {
-            match Self::open(address) {
-                Ok(driver) => return driver,
-                Err(status) => assert_eq!(status, 2, "ST_DEV_BUSY"),
-            }
-            assert!(begun.elapsed() < PATIENCE);
-        }
-    }
-
     fn lost(&self) -> TransportError {
         TransportError::Lost {
             port: self.name(),
@@ -234,37 +222,6 @@ fn the_device_works_over_usbip() {
     let (_, values) = client.parameters().unwrap();
     assert_eq!(values.get(id::STATIC_TORQUE), Some(0.45));
     assert!(served.end());
-}
-
-#[test]
-fn a_restart_of_comms_is_a_device_that_disconnects() {
-    let mut served = Served::new();
-    let driver = Driver::open(served.address).unwrap();
-    assert!(served.logged().contains("has imported the device"));
-    let mut management = Management::new(driver);
-    management.reboot().unwrap();
-    let mut driver = management.into_transport();
-    let end = until(&mut driver.urbs, |_| None::<()>);
-    assert_eq!(end, None, "the server closed the connection");
-    assert!(served.logged().contains("the device disconnected"));
-    // It has been plugged in all the time.
-    let client = Client::connect(Driver::open(served.address).unwrap()).unwrap();
-    assert_eq!(client.handshake().comms.serial, *b"SIM-COMMS-01");
-}
-
-#[test]
-fn a_client_that_is_killed_leaves_a_device_for_the_next_one() {
-    let served = Served::new();
-    for round in 0..20 {
-        let mut driver = Driver::open_when_free(served.address);
-        // Within a URB, and within its header.
-        driver.urbs.submit_out(1, &[0xaa; 10_000], 0);
-        driver.urbs.send(&[0, 0, 0, 1, 0]);
-        driver.urbs.write();
-        sleep(Duration::from_millis(round % 4));
-    }
-    let driver = Driver::open_when_free(served.address);
-    assert!(Client::connect(driver).is_ok());
 }
 
 #[test]

@@ -8,10 +8,9 @@ use crepitus_device::usb_port::HostBytes;
 use crepitus_device::{Comms, Drive};
 use crepitus_protocol::counters::DRIVE_COUNT;
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
-use crepitus_protocol::frame::{encode_body, encode_bytes};
-use crepitus_protocol::host::{Answer, Operation, Refusal, Reply};
-use crepitus_protocol::management::{self, Action, ManagementRequest};
-use crepitus_protocol::{Decoder, Lane, State};
+use crepitus_protocol::frame::encode_body;
+use crepitus_protocol::host::{Answer, Operation, Refusal};
+use crepitus_protocol::{Lane, State};
 use support::{Bench, Boots};
 
 /// Two packets and two bytes: every length at which USB or COBS could err.
@@ -110,89 +109,6 @@ fn bodies_of_every_length_do_nothing_to_the_drive() {
     assert_eq!(sum(counters), short + foreign);
     assert_eq!((drive.state(), drive.revision().0), (State::Disarmed, 0));
     assert!(!drive.take_reboot());
-}
-
-/// A device works normally after noise, half a frame, delimiters, and a frame
-/// that never ends.
-#[test]
-fn garbage_before_the_first_frame_is_discarded() {
-    let half = encode_bytes(Lane::Management, b"H\x07").unwrap();
-    for garbage in [
-        &b"AT+CGMM\r\n"[..],
-        &half[..4],
-        &[0; 70],
-        &[0xff; 700],
-        &[2, 2, 0, 1, 1, 0, 5],
-    ] {
-        let mut bench = Bench::new(&Boots::new());
-        for byte in garbage {
-            bench.comms.received(&[*byte]);
-            bench.comms.link_received(*byte);
-            bench.drive.link_received(*byte);
-        }
-        // The delimiter that a host sends first; the link has none, and loses
-        // a frame.
-        bench.comms.received(&[0]);
-        assert!(matches!(
-            bench.ask(Operation::Status),
-            Ok(Answer::Status(_))
-        ));
-        bench.settle();
-        assert_eq!(bench.ask(Operation::Zero), Ok(Answer::Done));
-        assert_eq!(bench.ask(Operation::Arm), Ok(Answer::Done));
-        assert_eq!(bench.ask(Operation::Disarm), Ok(Answer::Done));
-    }
-}
-
-/// A request lost to garbage before it is retried with its sequence number and
-/// carried out once.
-#[test]
-fn a_request_that_was_lost_is_repeated() {
-    let mut bench = Bench::new(&Boots::new());
-    bench.open();
-    bench.comms.received(b"no delimiter follows");
-    bench.number = 7;
-    bench.tell(Operation::Parameters);
-    bench.millisecond();
-    let requests = |bench: &Bench| bench.comms.counters().get(CommsCounter::Requests);
-    assert_eq!(requests(&bench), 1, "the opening");
-    sent(&mut bench.comms);
-    for _ in 0..3 {
-        bench.tell(Operation::Parameters);
-    }
-    let (mut decoder, mut replies) = (Decoder::new(), 0);
-    for byte in sent(&mut bench.comms) {
-        if let Some(Ok(body)) = decoder.push(byte) {
-            let reply: Reply = body.message().unwrap();
-            assert!(matches!(reply.answer, Ok(Answer::Parameters { .. })));
-            replies += 1;
-        }
-    }
-    assert_eq!((requests(&bench), replies), (2, 3));
-}
-
-/// Extra bytes of a management request, from a later version, are ignored.
-#[test]
-fn a_longer_management_request_is_answered() {
-    let mut comms = Comms::new(&Boots::new().comms);
-    sent(&mut comms);
-    let question = ManagementRequest {
-        action: Action::Hello,
-        token: 200,
-    };
-    for extra in 0..=LONGEST {
-        let bytes = [&question.bytes()[..], &vec![1; extra]].concat();
-        comms.received(&encode_bytes(Lane::Management, &bytes).unwrap());
-        let answer = sent(&mut comms);
-        let mut decoder = Decoder::new();
-        let mut tokens = Vec::new();
-        for byte in answer {
-            if let Some(Ok(body)) = decoder.push(byte) {
-                tokens.push(management::Answer::of(body.payload).unwrap().token());
-            }
-        }
-        assert_eq!(tokens, [200]);
-    }
 }
 
 /// Arming waits until the drive has reported its version: another one might take a frame for

@@ -8,15 +8,12 @@
     reason = "small numbers, and f32 is what is tested"
 )]
 
-mod support;
-
 use crepitus_model::render::input_check::{CATCH_UP_TICKS, InputLimits};
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
     Convention, EVENTS_PER_STEP, Event, Guarded, Phase, Real, Sample, Settings, ShaftStep,
     StickSlip,
 };
-use proptest::prelude::*;
 
 const TICK_S: f64 = 5e-5;
 const OMEGA: f64 = 0.9;
@@ -344,67 +341,4 @@ fn every_rung_can_be_restarted() {
         }
     }
     on_every_rung(&PutDown);
-}
-
-/// Any bit pattern, and shafts that are nearly possible.
-fn any_sample() -> impl Strategy<Value = Sample<f32>> {
-    let number = prop_oneof![
-        any::<u32>().prop_map(f32::from_bits),
-        -60.0..60.0_f32,
-        Just(-0.0),
-        Just(f32::MIN_POSITIVE / 4.0),
-    ];
-    let shaft = (number.clone(), number.clone(), number, any::<bool>());
-    prop_oneof![
-        1 => Just(Sample::Lost),
-        4 => shaft.prop_map(|(d, a, b, scale)| {
-            Sample::Taken(ShaftStep {
-                delta_phi_rad: if scale { d * TICK_S as f32 } else { d },
-                omega_start_rad_s: a,
-                omega_end_rad_s: b,
-            })
-        }),
-        4 => (-50.0..50.0_f32).prop_map(|w| {
-            Sample::Taken(ShaftStep {
-                delta_phi_rad: w * TICK_S as f32,
-                omega_start_rad_s: w,
-                omega_end_rad_s: w,
-            })
-        }),
-    ]
-}
-
-proptest! {
-    #![proptest_config(support::cases(500))]
-
-    #[test]
-    fn nothing_poisons_a_guarded_joint(samples in prop::collection::vec(any_sample(), 1..200)) {
-        struct Any<'a>(&'a [Sample<f32>]);
-        impl JointVisitor<f32> for Any<'_> {
-            type Output = ();
-            fn visit<J: StickSlip<f32>>(self, joint: J) {
-                let mut joint = Guarded::new(joint, InputLimits::device(TICK_S), 0.0);
-                for sample in self.0 {
-                    let mut events = 0;
-                    joint.tick(sample, |event| {
-                        events += 1;
-                        assert!((0.0..=1.0).contains(&event.fraction));
-                    });
-                    assert!(events <= EVENTS_PER_STEP * (CATCH_UP_TICKS as usize + 1));
-                    assert!(joint.torque_nm().abs() <= 0.4);
-                    assert!(joint.joint().theta_rad().is_finite());
-                    assert!(joint.joint().theta_dot_rad_s().is_finite());
-                }
-            }
-        }
-        for convention in Convention::ALL {
-            let settings = Settings { convention, ..Settings::default() };
-            let valid = settings.validate().unwrap();
-            for solver in Solver::ALL {
-                if solver.refusal_in::<f32>(convention).is_none() {
-                    with_joint::<f32, _>(&valid, solver, TICK_S, 0.0, Any(&samples)).unwrap();
-                }
-            }
-        }
-    }
 }

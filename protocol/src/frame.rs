@@ -309,16 +309,6 @@ mod tests {
     use std::vec::Vec;
 
     #[test]
-    fn a_frame_is_lane_tag_message_and_checksum() {
-        let frame = encode(Lane::Management, &[b'H', 0]).unwrap();
-        let plain = reference::decode(&frame[..frame.len() - 1]).unwrap();
-        assert_eq!(&plain[..4], b"M1H\0");
-        assert_eq!(&plain[4..], CRC.checksum(b"M1H\0").to_le_bytes());
-        assert_eq!(frame.last(), Some(&0));
-        assert_eq!(frame.iter().position(|b| *b == 0), Some(frame.len() - 1));
-    }
-
-    #[test]
     fn every_length_up_to_the_longest_fits() {
         for length in 0..=BODY_BYTES {
             for byte in [0, 1, 255] {

@@ -62,16 +62,3 @@ impl Lane {
         Self::ALL.into_iter().find(|lane| lane.byte() == byte)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lanes_differ_in_their_byte() {
-        for lane in Lane::ALL {
-            assert_eq!(Lane::of(lane.byte()), Some(lane));
-        }
-        assert_eq!(Lane::of(0), None);
-    }
-}

@@ -329,23 +329,4 @@ mod tests {
         let values = Values::default().with(&damped);
         assert_eq!(values.read::<5, Parameters>(), Parameters::default());
     }
-
-    #[test]
-    fn choices_are_places_of_names() {
-        let (_, restart) = find("crepitus.restart").unwrap();
-        assert!(restart.allows(0.0) && restart.allows(1.0));
-        assert!(!restart.allows(2.0) && !restart.allows(0.5) && !restart.allows(-1.0));
-    }
-
-    #[test]
-    fn some_parameters_only_change_without_torque() {
-        let now = Values::default();
-        assert_eq!(now.needs_disarmed(&now), None);
-        let mut next = now;
-        next.set(2, 300.0);
-        assert_eq!(next.needs_disarmed(&now), None);
-        let (lines, _) = find("encoder.lines").unwrap();
-        next.set(lines, 500.0);
-        assert_eq!(next.needs_disarmed(&now), Some(lines));
-    }
 }

@@ -25,18 +25,10 @@ fn the_target_adds_cycles_to_points_summary_and_report() {
     let home = tempfile::tempdir().unwrap();
     let scene = short_scene(home.path(), "frozen");
     let out = home.path().join("study");
-    let (scene, folder) = (scene.to_str().unwrap(), out.to_str().unwrap());
-    let output = accuracy(&[
-        "--target",
-        "--all",
-        "--quick",
-        "--steps",
-        "1e-4,5e-5",
-        "--scene",
-        scene,
-        "--out",
-        folder,
-    ]);
+    let to = out.display();
+    let output = accuracy(&format!(
+        "--target --all --quick --steps 1e-4,5e-5 --scene {scene} --out {to}"
+    ));
     if has_no_target(&output) {
         return;
     }
@@ -81,13 +73,8 @@ fn the_target_adds_cycles_to_points_summary_and_report() {
 fn the_record_is_what_the_target_does() {
     let home = tempfile::tempdir().unwrap();
     let out = home.path().join("study");
-    let output = accuracy(&[
-        "--target",
-        "--steps",
-        "5e-5",
-        "--out",
-        out.to_str().unwrap(),
-    ]);
+    let to = out.display();
+    let output = accuracy(&format!("--target --steps 5e-5 --out {to}"));
     if has_no_target(&output) {
         return;
     }
@@ -100,15 +87,8 @@ fn the_record_is_what_the_target_does() {
 fn on_the_target_its_cycles_choose() {
     let home = tempfile::tempdir().unwrap();
     let scene = short_scene(home.path(), "frozen");
-    let arguments = [
-        "--need",
-        "torque=9e-3,frequency=1e-6",
-        "--target",
-        "--quick",
-        "--scene",
-        scene.to_str().unwrap(),
-    ];
-    let output = accuracy(&[&["--json"], &arguments[..]].concat());
+    let arguments = format!("--need torque=9e-3,frequency=1e-6 --target --quick --scene {scene}");
+    let output = accuracy(&format!("--json {arguments}"));
     if has_no_target(&output) {
         return;
     }

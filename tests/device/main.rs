@@ -7,7 +7,7 @@ mod support;
 
 use serde_json::Value;
 use std::fs;
-use support::{check_books, recording, run, stderr, stdout, summary};
+use support::{check_books, recording, run, run_line, stderr, stdout, summary, words};
 
 /// Runs a verb on a simulated device.
 fn sim(arguments: &[&str]) -> std::process::Output {
@@ -79,20 +79,12 @@ fn parameters_are_listed_read_and_set() {
     let list: Value = serde_json::from_str(&stdout(&run(&["params", "list", "--json"]))).unwrap();
     assert_eq!(list.as_array().unwrap().len(), 123);
     assert_eq!(list[4]["name"], "crepitus.static_torque_nm");
-    let got = json(&[
-        "params",
-        "get",
-        "crepitus.static_torque_nm",
-        "crepitus.restart",
-    ]);
+    let got = "params get crepitus.static_torque_nm crepitus.restart";
+    let got = json(&words(got));
     assert_eq!(got["values"]["crepitus.static_torque_nm"], 0.4);
     assert_eq!(got["values"]["crepitus.restart"], "elastic");
-    let set = json(&[
-        "params",
-        "set",
-        "crepitus.static_torque_nm=0.5",
-        "crepitus.restart=from-kinetic",
-    ]);
+    let set = "params set crepitus.static_torque_nm=0.5 crepitus.restart=from-kinetic";
+    let set = json(&words(set));
     assert_eq!(set["revision"], 2);
     let file = support::repository().join("scenes/everything.toml");
     for what in ["fine", "bone-shaping", file.to_str().unwrap()] {
@@ -273,23 +265,14 @@ fn a_recording_is_reported() {
 }
 
 /// The leg of this scene leaves the range of motion, and the drive turns off.
-const FAULTS: [&str; 7] = [
-    "--device",
-    "sim",
-    "--scene",
-    "high-speed",
-    "--arm",
-    "--zero",
-    "--json",
-];
-
 #[test]
 fn a_recording_that_a_fault_ends_is_named() {
     let home = tempfile::tempdir().unwrap();
     let file = home.path().join("try");
-    let mut arguments = vec!["record", file.to_str().unwrap()];
-    arguments.extend(FAULTS);
-    let output = run(&arguments);
+    let output = run_line(&format!(
+        "record {} --device sim --scene high-speed --arm --zero --json",
+        file.display()
+    ));
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let said: Value = serde_json::from_str(&stdout(&output)).unwrap();
     assert_eq!(said["file"].as_str(), file.to_str());

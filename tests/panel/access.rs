@@ -95,6 +95,7 @@ fn other_sites_names_and_origins_are_refused() {
         "evil.example",
         &format!("evil.example:{port}"),
         "127.0.0.1",
+        &format!("127.0.0.1:{port}.evil.example"),
         "localhost:1",
     ] {
         assert_eq!(panel.status("/", &[("Host", rebound)]), 421, "{rebound}");

@@ -1,6 +1,6 @@
 //! Reports of recordings: what they replace, and what they draw.
 
-use crate::support::{crepitus, names, recording, refuses, run, stderr};
+use crate::support::{crepitus, names, recording, refuses, run, stderr, words};
 use crate::{recorded, recording_in_progress, text};
 use std::fs;
 use std::path::Path;
@@ -72,18 +72,9 @@ fn a_symptom_of_a_recording_is_drawn_with_its_limits() {
     fs::write(folder.join("rigid.toml"), scene).unwrap();
     let output = crepitus()
         .current_dir(folder)
-        .args([
-            "record",
-            "rigid",
-            "--device",
-            "sim",
-            "--scene",
-            "rigid.toml",
-            "--for",
-            "2s",
-            "--arm",
-            "--zero",
-        ])
+        .args(words(
+            "record rigid --device sim --scene rigid.toml --for 2s --arm --zero",
+        ))
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", stderr(&output));

@@ -7,7 +7,7 @@ mod refused;
 mod support;
 
 use std::fs;
-use support::{crepitus, csv, names, number, run, stderr, stdout, summary};
+use support::{crepitus, csv, done, names, number, refuses, run_line, stderr, stdout, summary};
 
 const FILES: [&str; 4] = ["events.csv", "report.html", "summary.json", "trace.csv"];
 
@@ -71,21 +71,11 @@ fn a_scene_becomes_four_files() {
 #[test]
 fn effects_are_timed_when_that_is_asked_for() {
     let home = tempfile::tempdir().unwrap();
-    for (name, more) in [("trace", None), ("alone", Some("--no-trace"))] {
-        let out = home.path().join(name);
-        let out = out.to_str().unwrap();
-        let short = [
-            "run",
-            "encoder",
-            "--set",
-            "duration_s=0.2",
-            "--costs",
-            "--out",
-            out,
-        ];
-        let arguments: Vec<_> = short.into_iter().chain(more).collect();
-        let output = run(&arguments);
-        assert!(output.status.success(), "{}", stderr(&output));
+    for (name, more) in [("trace", ""), ("alone", " --no-trace")] {
+        let to = home.path().join(name).display().to_string();
+        done(&format!(
+            "run encoder --set duration_s=0.2 --costs --out {to}{more}"
+        ));
         let summary = summary(&home.path().join(name));
         for effect in summary["effects"].as_array().unwrap() {
             assert!(effect["ns_resolution"].as_f64().unwrap() > 0.0, "{effect}");
@@ -101,19 +91,11 @@ fn trace_rows_can_be_thinned_and_stay_the_same_rows() {
     let home = tempfile::tempdir().unwrap();
     let rows = |every: &str| {
         let out = home.path().join(every);
-        let output = run(&[
-            "run",
-            "encoder",
-            "--set",
-            "duration_s=0.2",
-            "--set",
-            "output.trace_step_s=5e-5",
-            "--trace-every",
-            every,
-            "--out",
-            out.to_str().unwrap(),
-        ]);
-        assert!(output.status.success(), "{}", stderr(&output));
+        done(&format!(
+            "run encoder --set duration_s=0.2 --set output.trace_step_s=5e-5 --trace-every {every} \
+             --out {}",
+            out.display()
+        ));
         csv(&out.join("trace.csv")).1
     };
     let (all, some) = (rows("1"), rows("7"));
@@ -127,17 +109,10 @@ fn the_same_run_gives_the_same_bytes() {
     for solver in ["exact", "exact-events"] {
         let files = |name: &str| {
             let out = home.path().join(format!("{solver}-{name}"));
-            let output = run(&[
-                "run",
-                "encoder",
-                "--solver",
-                solver,
-                "--set",
-                "duration_s=1",
-                "--out",
-                out.to_str().unwrap(),
-            ]);
-            assert!(output.status.success());
+            let to = out.display();
+            done(&format!(
+                "run encoder --solver {solver} --set duration_s=1 --out {to}"
+            ));
             ["trace.csv", "events.csv"].map(|f| fs::read(out.join(f)).unwrap())
         };
         assert_eq!(files("a"), files("b"));
@@ -148,25 +123,12 @@ fn the_same_run_gives_the_same_bytes() {
 fn options_change_the_scene() {
     let home = tempfile::tempdir().unwrap();
     let out = home.path().join("run");
-    let output = run(&[
-        "--json",
-        "run",
-        "high-speed",
-        "--solver",
-        "exact",
-        "--step",
-        "1e-3",
-        "--precision",
-        "f32",
-        "--set",
-        "effects.crepitus.preset=fine",
-        "--set",
-        "duration_s=0.5",
-        "--out",
-        out.to_str().unwrap(),
-    ]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let printed: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let printed = done(&format!(
+        "--json run high-speed --solver exact --step 1e-3 --precision f32 \
+         --set effects.crepitus.preset=fine --set duration_s=0.5 --out {}",
+        out.display()
+    ));
+    let printed: serde_json::Value = serde_json::from_str(&printed).unwrap();
     assert_eq!(printed["summary"], summary(&out));
     assert_eq!(printed["out"], out.to_str().unwrap());
     let summary = &printed["summary"];
@@ -188,20 +150,12 @@ fn options_change_the_scene() {
 fn a_solver_that_diverges_is_exit_code_1_and_writes_nothing() {
     let home = tempfile::tempdir().unwrap();
     let out = home.path().join("out");
-    let output = run(&[
-        "run",
-        "knee-pass-physical",
-        "--solver",
-        "euler",
-        "--step",
-        "5e-5",
-        "--set",
-        "effects.crepitus.inertia_kg_m2=1e-5",
-        "--set",
-        "effects.crepitus.stiffness_nm_per_rad=4e4",
-        "--out",
-        out.to_str().unwrap(),
-    ]);
+    let output = run_line(&format!(
+        "run knee-pass-physical --solver euler --step 5e-5 \
+         --set effects.crepitus.inertia_kg_m2=1e-5 \
+         --set effects.crepitus.stiffness_nm_per_rad=4e4 --out {}",
+        out.display()
+    ));
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let said = stderr(&output);
     assert!(
@@ -216,8 +170,7 @@ fn what_scenes_promise_comes_true() {
     let home = tempfile::tempdir().unwrap();
     let breaks = |name: &str| {
         let out = home.path().join(name);
-        let output = run(&["run", name, "--out", out.to_str().unwrap()]);
-        assert!(output.status.success(), "{}", stderr(&output));
+        done(&format!("run {name} --out {}", out.display()));
         let summary = summary(&out);
         assert_eq!(
             summary["warnings"].as_array().unwrap().len(),
@@ -238,19 +191,10 @@ fn pictures_are_svg_or_pdf() {
     let home = tempfile::tempdir().unwrap();
     let pictures = |format: &str| {
         let out = home.path().join(format);
-        let output = crepitus()
-            .args([
-                "run",
-                "fig6-ideal-cycle",
-                "--set",
-                "duration_s=0.2",
-                format,
-                "--out",
-            ])
-            .arg(&out)
-            .output()
-            .unwrap();
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let to = out.display();
+        done(&format!(
+            "run fig6-ideal-cycle --set duration_s=0.2 {format} --out {to}"
+        ));
         out
     };
     let of = |folder: &std::path::Path, kind: &str| -> Vec<String> {
@@ -283,11 +227,6 @@ fn pictures_are_svg_or_pdf() {
         assert_eq!(text.matches(&page).count(), 1, "{name}: {page}");
         assert_eq!(text.matches("/Type /Page\n").count(), 1, "{name}");
     }
-    let refused = run(&["run", "fig6-ideal-cycle", "--pictures=bmp"]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(
-        stderr(&refused).contains("expected svg or pdf"),
-        "{}",
-        stderr(&refused)
-    );
+    let bmp = ["run", "fig6-ideal-cycle", "--pictures=bmp"];
+    refuses(&bmp, 2, "expected svg or pdf");
 }

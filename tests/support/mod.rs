@@ -27,6 +27,23 @@ pub(crate) fn run(arguments: &[&str]) -> Output {
         .expect("the program starts")
 }
 
+/// Words of a line, none of which has a space.
+pub(crate) fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
+}
+
+/// Runs the program with the words of a line.
+pub(crate) fn run_line(line: &str) -> Output {
+    run(&words(line))
+}
+
+/// stdout of a line that succeeds.
+pub(crate) fn done(line: &str) -> String {
+    let output = run_line(line);
+    assert!(output.status.success(), "{line}: {}", stderr(&output));
+    stdout(&output)
+}
+
 /// Runs the program without anything at stdin; asserts its exit code and a part of its error.
 pub(crate) fn refuses(arguments: &[&str], code: i32, part: &str) {
     let output = crepitus()

@@ -9,39 +9,32 @@ mod usage;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use std::process::Output;
+use std::process::Command;
 use support::{crepitus, names, number, stderr, stdout, table};
 
 const TS: &str = "effects.crepitus.static_torque_nm";
 const KR: &str = "effects.crepitus.stiffness_nm_per_rad";
 
 /// A grid of 15 short runs.
-const GRID: [&str; 6] = [
-    "--vary",
-    "effects.crepitus.static_torque_nm=1.6:4:lin5",
-    "--vary",
-    "effects.crepitus.stiffness_nm_per_rad=20:200:log3",
-    "--set",
-    "duration_s=0.5",
-];
+const GRID: &str = "low-speed --vary effects.crepitus.static_torque_nm=1.6:4:lin5 \
+                    --vary effects.crepitus.stiffness_nm_per_rad=20:200:log3 --set duration_s=0.5";
 
-fn sweep_in(home: &Path, arguments: &[&str]) -> Output {
-    crepitus()
-        .arg("sweep")
-        .args(arguments)
-        .current_dir(home)
-        .output()
-        .expect("the program starts")
+/// A sweep with these arguments, none of which has a space.
+fn sweep(home: &Path, arguments: &str) -> Command {
+    let mut command = crepitus();
+    command.arg("sweep").args(arguments.split(' '));
+    command.current_dir(home);
+    command
 }
 
-fn done(home: &Path, arguments: &[&str]) -> String {
-    let output = sweep_in(home, arguments);
+fn done(home: &Path, arguments: &str) -> String {
+    let output = sweep(home, arguments).output().unwrap();
     assert!(output.status.success(), "{}", stderr(&output));
     stdout(&output)
 }
 
-fn refused(home: &Path, arguments: &[&str], code: i32) -> String {
-    let output = sweep_in(home, arguments);
+fn refused(home: &Path, arguments: &str, code: i32) -> String {
+    let output = sweep(home, arguments).output().unwrap();
     assert_eq!(output.status.code(), Some(code), "{}", stderr(&output));
     stderr(&output)
 }
@@ -59,10 +52,7 @@ fn column(header: &[String], rows: &[Vec<String>], name: &str) -> Vec<String> {
 fn a_row_has_every_number_of_its_run() {
     let home = tempfile::tempdir().unwrap();
     let home = home.path();
-    let text = done(
-        home,
-        &[&["low-speed", "--out", "s", "--format", "csv"], &GRID[..]].concat(),
-    );
+    let text = done(home, &format!("{GRID} --out s --format csv"));
     assert!(
         text.contains("15 runs in") && text.contains("s/sweep.csv"),
         "{text}"
@@ -78,19 +68,13 @@ fn a_row_has_every_number_of_its_run() {
     assert_eq!(&kr[..4], ["20.0", "63.2455532034", "200.0", "20.0"]);
     assert_eq!(&ts[..4], ["1.6", "1.6", "1.6", "2.2"]);
     for row in [0, 7, 14] {
-        let set = [format!("{TS}={}", ts[row]), format!("{KR}={}", kr[row])];
+        let (ts, kr) = (&ts[row], &kr[row]);
+        let line = format!(
+            "run low-speed --no-trace --json --set duration_s=0.5 --out one --force \
+             --set {TS}={ts} --set {KR}={kr}"
+        );
         let ran = crepitus()
-            .args([
-                "run",
-                "low-speed",
-                "--no-trace",
-                "--json",
-                "--set",
-                "duration_s=0.5",
-            ])
-            .args([
-                "--out", "one", "--force", "--set", &set[0], "--set", &set[1],
-            ])
+            .args(line.split(' '))
             .current_dir(home)
             .output()
             .unwrap();
@@ -118,70 +102,53 @@ fn a_row_has_every_number_of_its_run() {
 fn shards_together_are_the_whole() {
     let home = tempfile::tempdir().unwrap();
     let home = home.path();
-    let sweep =
-        |more: &[&'static str]| [&["low-speed", "--format", "csv"], &GRID[..], more].concat();
-    done(home, &sweep(&["--out", "whole"]));
+    let sweep = |more: &str| format!("{GRID} --format csv --out {more}");
+    done(home, &sweep("whole"));
     for part in ["3/4", "1/4", "2/4"] {
-        let text = done(home, &sweep(&["--out", "parts", "--shard", part]));
+        let text = done(home, &sweep(&format!("parts --shard {part}")));
         assert!(text.contains("--merge parts"), "{text}");
     }
-    let text = refused(home, &["--merge", "parts"], 1);
+    let text = refused(home, "--merge parts", 1);
     assert!(
         text.contains("4 of 15 runs are not there: points 11 to 14"),
         "{text}"
     );
     assert!(!home.join("parts/sweep.csv").exists());
     // One that ran elsewhere.
-    done(home, &sweep(&["--out", "elsewhere", "--shard", "4/4"]));
-    let text = done(home, &["--merge", "parts", "elsewhere", "--format", "csv"]);
+    done(home, &sweep("elsewhere --shard 4/4"));
+    let text = done(home, "--merge parts elsewhere --format csv");
     assert!(text.contains("all 15 runs are there"), "{text}");
     let read = |folder| fs::read_to_string(home.join(folder).join("sweep.csv")).unwrap();
     assert_eq!(read("whole"), read("parts"));
     // And again: it is there already.
-    done(home, &["--merge", "parts"]);
+    done(home, "--merge parts");
 
     // Another sweep is not taken for a part of it.
-    let other = [&GRID[..4], &["--set", "duration_s=0.6"]].concat();
-    let other = |more: &[&'static str]| [&["low-speed"], &other[..], more].concat();
-    done(home, &other(&["--out", "other", "--shard", "4/4"]));
-    done(home, &sweep(&["--out", "again", "--shard", "1/4"]));
-    let text = refused(home, &["--merge", "again", "other"], 2);
+    let longer = GRID.replace("duration_s=0.5", "duration_s=0.6");
+    let other = |more: &str| format!("{longer} --out {more}");
+    done(home, &other("other --shard 4/4"));
+    done(home, &sweep("again --shard 1/4"));
+    let text = refused(home, "--merge again other", 2);
     assert!(text.contains("other has another sweep"), "{text}");
-    let text = refused(home, &other(&["--out", "parts"]), 2);
+    let text = refused(home, &other("parts"), 2);
     assert!(
         text.contains("parts has another sweep") && text.contains("--force"),
         "{text}"
     );
-    done(home, &other(&["--out", "parts", "--force"]));
+    done(home, &other("parts --force"));
 }
 
 #[test]
 fn a_run_that_fails_is_a_row_with_its_reason() {
     let home = tempfile::tempdir().unwrap();
     let home = home.path();
-    let output = sweep_in(
+    let told = done(
         home,
-        &[
-            "low-speed",
-            "--out",
-            "s",
-            "--format",
-            "csv",
-            "--json",
-            "--set",
-            "duration_s=20",
-            "--vary",
-            "solver.kind=euler,exact",
-            "--vary",
-            "solver.step_s=5e-5,5e-2",
-            "--vary",
-            "effects.crepitus.kinetic_torque_nm=0.3,100",
-            "--set",
-            "effects.crepitus.convention=physical",
-        ],
+        "low-speed --out s --format csv --json --set duration_s=20 --vary solver.kind=euler,exact \
+         --vary solver.step_s=5e-5,5e-2 --vary effects.crepitus.kinetic_torque_nm=0.3,100 \
+         --set effects.crepitus.convention=physical",
     );
-    assert!(output.status.success(), "{}", stderr(&output));
-    let told: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let told: Value = serde_json::from_str(&told).unwrap();
     let (header, rows) = table(&home.join("s/sweep.csv"));
     let failures = column(&header, &rows, "failure");
     assert_eq!(rows.len(), 8);
@@ -210,16 +177,8 @@ fn points_of_another_program() {
         format!("{TS},solver.kind\n2.5,exact\n3.5,exact-events\n"),
     )
     .unwrap();
-    let arguments = [
-        "low-speed",
-        "--points",
-        "points.csv",
-        "--out",
-        "s",
-        "--format",
-        "csv",
-    ];
-    done(home, &arguments);
+    let arguments = "low-speed --points points.csv --out s --format csv";
+    done(home, arguments);
     let (header, rows) = table(&home.join("s/sweep.csv"));
     assert_eq!(column(&header, &rows, TS), ["2.5", "3.5"]);
     assert_eq!(column(&header, &rows, "solver"), ["exact", "exact-events"]);
@@ -229,9 +188,9 @@ fn points_of_another_program() {
         format!("{TS},solver.kind\n2.5,exact\n3.6,exact\n"),
     )
     .unwrap();
-    assert!(refused(home, &arguments, 2).contains("another sweep"));
+    assert!(refused(home, arguments, 2).contains("another sweep"));
     fs::write(home.join("points.csv"), format!("{TS},{TS}\n2.5,2\n")).unwrap();
-    let text = refused(home, &arguments, 2);
+    let text = refused(home, arguments, 2);
     assert!(text.contains("points.csv: line 1: column 2"), "{text}");
 }
 
@@ -239,30 +198,13 @@ fn points_of_another_program() {
 fn traces_are_those_of_single_runs() {
     let home = tempfile::tempdir().unwrap();
     let home = home.path();
-    done(
-        home,
-        &[
-            "low-speed",
-            "--traces",
-            "--out",
-            "s",
-            "--vary",
-            "duration_s=0.1,0.3",
-        ],
-    );
+    done(home, "low-speed --traces --out s --vary duration_s=0.1,0.3");
     assert_eq!(
         names(&home.join("s/traces")),
         ["0000000000.csv", "0000000001.csv"]
     );
     let ran = crepitus()
-        .args([
-            "run",
-            "low-speed",
-            "--set",
-            "duration_s=0.3",
-            "--out",
-            "one",
-        ])
+        .args("run low-speed --set duration_s=0.3 --out one".split(' '))
         .current_dir(home)
         .output()
         .unwrap();
@@ -275,8 +217,8 @@ fn traces_are_those_of_single_runs() {
 #[test]
 fn the_cost_is_estimated() {
     let home = tempfile::tempdir().unwrap();
-    let arguments = [&["low-speed", "--estimate=1e7", "--json"], &GRID[..]].concat();
-    let told: Value = serde_json::from_str(&done(home.path(), &arguments)).unwrap();
+    let told = done(home.path(), &format!("{GRID} --estimate=1e7 --json"));
+    let told: Value = serde_json::from_str(&told).unwrap();
     let number = |name: &str| told[name].as_f64().unwrap();
     assert_eq!(told["measured_runs"], 15);
     let ratio = number("wall_s") / number("measured_wall_s") / (1e7 / 15.0);
@@ -291,25 +233,11 @@ fn sampled_points_fill_their_ranges() {
     let home = tempfile::tempdir().unwrap();
     let home = home.path();
     for kind in ["--latin", "--sobol"] {
-        done(
-            home,
-            &[
-                "low-speed",
-                kind,
-                "64",
-                "--seed",
-                "3",
-                "--force",
-                "--out",
-                "s",
-                "--format",
-                "csv",
-                "--set",
-                "duration_s=0.05",
-                "--vary",
-                "effects.crepitus.static_torque_nm=2:4",
-            ],
+        let arguments = format!(
+            "low-speed {kind} 64 --seed 3 --force --out s --format csv --set duration_s=0.05 \
+             --vary {TS}=2:4"
         );
+        done(home, &arguments);
         let (header, rows) = table(&home.join("s/sweep.csv"));
         let mut parts: Vec<_> = column(&header, &rows, TS)
             .iter()
@@ -328,12 +256,6 @@ fn sampled_points_fill_their_ranges() {
 #[test]
 fn more_threads_than_there_can_be_are_as_many_as_there_are_points() {
     let home = tempfile::tempdir().unwrap();
-    let arguments = [
-        "low-speed",
-        "--vary",
-        "duration_s=0.01,0.02",
-        "--threads",
-        "99999999",
-    ];
-    done(home.path(), &arguments);
+    let arguments = "low-speed --vary duration_s=0.01,0.02 --threads 99999999";
+    done(home.path(), arguments);
 }

@@ -229,24 +229,6 @@ mod tests {
     }
 
     #[test]
-    fn a_drive_with_other_parameters_is_given_the_right_ones() {
-        let parameters = Parameters::new(None);
-        assert!(parameters.to_send(Some(Revision::NONE)).is_some());
-        assert!(parameters.to_send(Some(Revision(1))).is_none());
-        assert!(parameters.to_send(None).is_none(), "nobody is there");
-    }
-
-    #[test]
-    fn values_that_are_sent_again_are_newer_than_what_the_drive_has() {
-        let mut parameters = Parameters::new(None);
-        parameters.renumber(Revision(1));
-        assert_eq!(parameters.revision(), Revision(2));
-        parameters.renumber(Revision(9));
-        assert_eq!(parameters.revision(), Revision(10));
-        assert!(parameters.to_send(Some(Revision(9))).is_some());
-    }
-
-    #[test]
     fn saved_parameters_are_used_if_valid() {
         let mut values = Values::default();
         values.set(id::STATIC_TORQUE, 0.5);

@@ -319,20 +319,6 @@ mod tests {
     }
 
     #[test]
-    fn nothing_of_before_a_start_is_open_after_it() {
-        let mut sessions = Sessions::new(1);
-        let before = open(&mut sessions, 1, 7);
-        let arm = request(1, before, 8, Operation::Arm);
-        assert_eq!(sessions.classify(&arm), RequestClass::New);
-        let mut sessions = Sessions::new(2);
-        assert_eq!(sessions.classify(&arm), RequestClass::NotOpen);
-        // Not even if the opening is replayed, too.
-        assert_ne!(open(&mut sessions, 1, 7), before);
-        assert_eq!(sessions.classify(&arm), RequestClass::NotOpen);
-        assert!(!sessions.is_open(Session(1), Nonce::NONE));
-    }
-
-    #[test]
     fn the_least_recently_used_session_is_evicted_but_not_one_that_is_needed() {
         let mut sessions = Sessions::new(1);
         let nonces: [Nonce; SESSIONS] =

@@ -311,10 +311,11 @@ fn write_words<'a>(words: &[u32], bytes: &'a mut [u8; PIECE_BYTES]) -> Option<&'
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_protocol::Revision;
     use crepitus_protocol::frame::{FRAME_BYTES, Frame, SoftwareCrc};
     use crepitus_protocol::link::FromDrive;
     use crepitus_protocol::management::Identity;
-    use crepitus_protocol::telemetry::CoilCurrent;
+    use crepitus_protocol::telemetry::{BlockFlags, CoilCurrent};
 
     type Places = Outgoing<FrameBuffer>;
 
@@ -356,13 +357,17 @@ mod tests {
             ..DriveStatus::default()
         };
         let mut block = Block {
-            first_tick: 300,
+            sequence: 700,
+            first_tick: 1 << 40,
+            revision: Revision(300),
+            dropped: 20,
+            flags: BlockFlags(7),
             phases: core::array::from_fn(|n| EffectPhases(u16::MAX >> (n % 15))),
             coil_currents: [-3, 0, 700, i16::MIN].map(CoilCurrent),
             ..Block::default()
         };
         for (sample, n) in block.samples.iter_mut().zip(1_u8..) {
-            (sample.count, sample.torque_nm) = (n.into(), f32::from(n));
+            (sample.count, sample.torque_nm) = (-i32::from(n), f32::from(n));
         }
         let answer = Answer::Hello {
             token: 7,

@@ -60,9 +60,4 @@ impl<T: Transport> Management<T> {
     pub fn transport_mut(&mut self) -> &mut T {
         self.0.transport_mut()
     }
-
-    /// Returns the transport.
-    pub fn into_transport(self) -> T {
-        self.0.into_transport()
-    }
 }

@@ -95,10 +95,6 @@ pub(crate) fn grade_0(name: &str) -> Option<String> {
 pub(crate) fn suggestions(name: &str) -> String {
     let files = files().unwrap_or_default();
     let own = files.iter().filter_map(|file| file.file_stem()?.to_str());
-    suggestions_among(own, name)
-}
-
-fn suggestions_among<'n>(own: impl Iterator<Item = &'n str>, name: &str) -> String {
     let small = name.to_lowercase();
     let shipped = preset::shipped().iter().map(|preset| preset.name.as_str());
     let containing: Vec<&str> = shipped.clone().filter(|n| n.contains(&small)).collect();
@@ -222,37 +218,5 @@ mod tests {
         ] {
             assert!(check_name(bad).is_err(), "{bad:?}");
         }
-    }
-
-    #[test]
-    fn a_part_of_a_name_in_any_letters_leads_to_those_that_have_it() {
-        let suggested = |name| suggestions_among(["monday"].into_iter(), name);
-        for part in ["mas-2", "MAS-2", "Mas-2"] {
-            assert_eq!(
-                suggested(part),
-                "; of this kind are mas-2-catch, mas-2-reflex"
-            );
-        }
-        assert_eq!(suggested("Mondya"), " (did you mean monday?)");
-        for part in ["", "nothing-like-it"] {
-            assert_eq!(suggested(part), "");
-        }
-        for grade in ["mas-0", "MAS-0", "UPDRS-0", "updrs-0-cogwheel"] {
-            assert!(grade_0(grade).is_some(), "{grade}");
-        }
-        assert_eq!(grade_0("mas-01"), None);
-    }
-
-    #[test]
-    fn a_folder_is_made_but_a_file_in_its_place_is_named() {
-        let home = tempfile::tempdir().unwrap();
-        let folder = home.path().join("a/b");
-        assert!(make(&folder).is_ok() && make(&folder).is_ok() && folder.is_dir());
-        let file = folder.join("c");
-        fs::write(&file, "").unwrap();
-        let text = |folder: &Path| make(folder).unwrap_err().into_text();
-        assert!(text(&file).contains("is no folder"), "{}", text(&file));
-        let below = text(&file.join("d"));
-        assert!(below.contains("cannot be created"), "{below}");
     }
 }

@@ -137,30 +137,6 @@ mod tests {
     }
 
     #[test]
-    fn our_own_page_is_answered() {
-        let own = [
-            ("origin", "http://localhost:80"),
-            ("sec-fetch-site", "same-origin"),
-        ];
-        assert_eq!(status("/", "localhost:80", &[]), 200);
-        assert_eq!(status("/ws", "localhost:80", &own), 200);
-        assert_eq!(status("/panel.css", "localhost:80", &own), 200);
-    }
-
-    #[test]
-    fn a_name_that_was_made_to_lead_here_is_refused() {
-        for host in [
-            "evil.example:80",
-            "localhost:81",
-            "localhost",
-            "127.0.0.1:80.evil.example",
-            "",
-        ] {
-            assert_eq!(status("/", host, &[]), 421, "{host}");
-        }
-    }
-
-    #[test]
     fn pages_of_others_are_refused() {
         let host = "127.0.0.1:80";
         for origin in [

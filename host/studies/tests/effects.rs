@@ -7,7 +7,7 @@ use crepitus_scene::trace::{EventRecord, SymptomEvent};
 use crepitus_scene::{Overrides, Scene};
 use crepitus_studies::effects::row::Outcome;
 use crepitus_studies::effects::variant::Change;
-use crepitus_studies::effects::{EffectsError, EffectsStudy, Plan, Refusal, run};
+use crepitus_studies::effects::{EffectsError, EffectsStudy, Plan, run};
 use crepitus_studies::{Cancelled, Watcher};
 use std::convert::Infallible;
 use std::path::Path;
@@ -292,21 +292,6 @@ fn a_variant_that_cannot_run_is_a_row_that_says_why() {
         assert!(row.failure().unwrap().len() > 20, "{row:?}");
         assert!(row.ns_per_step.is_nan());
     }
-}
-
-#[test]
-fn a_leg_that_nobody_holds_is_refused() {
-    let text = "version = 1\ntitle = \"falls\"\nduration_s = 0.1\n[motion]\nkind = \"released\"\nfrom_deg = 10\n\
-                [solver]\nkind = \"exact-events\"\nstep_s = 5e-5\n[effects.limb]\n";
-    let scene = Scene::parse(Path::new("a.toml"), text, &Overrides::default()).unwrap();
-    let plan = Plan {
-        scene,
-        tolerance: None,
-    };
-    assert!(matches!(
-        run(&plan, &mut Patient { last: 0.0 }),
-        Err(EffectsError::Refused(Refusal::Released))
-    ));
 }
 
 #[test]

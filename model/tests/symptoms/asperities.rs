@@ -3,7 +3,6 @@
 
 use super::rig::*;
 use crepitus_model::control::encoder::EncoderSettings;
-use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::symptom::Word;
 use crepitus_model::render::effects::texture::TextureSettings;
 use crepitus_model::render::position::{Position, Sensing};
@@ -136,10 +135,7 @@ fn hand(seed: u64) -> impl Iterator<Item = i32> {
 
 fn compare<F: Real>(settings: TextureSettings, from: i32, within_nm: f64) -> u32 {
     let sensing = Sensing::of_encoder(&EncoderSettings::default());
-    let effects = EffectSettings {
-        texture: Some(settings),
-        ..EffectSettings::default()
-    };
+    let effects = on!(texture: settings);
     let mut snaps = 0;
     for seed in 0..20 {
         let mut count = from;

@@ -43,19 +43,13 @@ fn decays() -> [Decay; 2] {
     };
     [
         Decay {
-            settings: EffectSettings {
-                spasticity: Some(spasticity),
-                ..EffectSettings::default()
-            },
+            settings: on!(spasticity: spasticity),
             word: Word::Catch,
             stiffness: spasticity.catch_stiffness_nm_per_rad,
             limit_nm: catch_nm,
         },
         Decay {
-            settings: EffectSettings {
-                clasp_knife: Some(clasp_knife),
-                ..EffectSettings::default()
-            },
+            settings: on!(clasp_knife: clasp_knife),
             word: Word::Release,
             stiffness: clasp_knife.catch_stiffness_nm_per_rad,
             limit_nm: blade_nm,

@@ -5,12 +5,9 @@ use super::random::*;
 use super::rig::*;
 use super::support;
 
-use crepitus_model::render::effects::clasp_knife::ClaspKnifeSettings;
 use crepitus_model::render::effects::clonus::ClonusSettings;
-use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 use crepitus_model::render::effects::spasticity::SpasticitySettings;
 use crepitus_model::render::effects::{EffectSettings, TANK_J, TANK_REFILL_W};
-use crepitus_model::render::position::Sensing;
 use proptest::prelude::*;
 
 proptest! {
@@ -64,31 +61,6 @@ proptest! {
     }
 
     #[test]
-    fn a_commit_pushes_no_hand_that_rests(
-        (kind, x) in parameters(),
-        (other, y) in parameters(),
-        points in tremble(),
-    ) {
-        let angles = hand(&points);
-        let mut rig = Rig::<f64>::new(symptom(kind, &x), Sensing::IDEAL, angles[0]);
-        let mut nm = 0.0;
-        for pair in angles.windows(2) {
-            let omega = (pair[1] - pair[0]) / TICK_S;
-            nm = rig.step((pair[0], omega), (pair[1], omega), pair[1] - pair[0]);
-        }
-        let rest = (angles[angles.len() - 1], 0.0);
-        rig.commit(symptom(other, &y));
-        for _ in 0..3_000 {
-            let now_nm = rig.step(rest, rest, 0.0);
-            let slower = (now_nm - nm).abs() <= SLEW_NM + 1e-12;
-            // What decays or gives by itself does so as fast as it wants.
-            prop_assert!(slower || now_nm.abs() <= nm.abs(), "{nm} to {now_nm}");
-            prop_assert!(now_nm.abs() <= nm.abs() + 1e-12, "{nm} to {now_nm}");
-            nm = now_nm;
-        }
-    }
-
-    #[test]
     fn what_gives_energy_is_paid_from_the_tank(
         gain in 0.0..20.0_f64,
         amplitude in 0.0..4.5_f64,
@@ -135,38 +107,6 @@ proptest! {
     }
 
     #[test]
-    fn no_input_makes_a_torque_that_is_none(
-        (kind, x) in parameters(),
-        samples in prop::collection::vec((0..12_usize, -3.0..3.0_f64), 500..1500),
-    ) {
-        let settings = symptom(kind, &x);
-        let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e30, -1e30, 1e-42, f64::MAX];
-        let mut rig = Rig::<f32>::new(settings, Sensing::IDEAL, 1.0);
-        let mut phi = 1.0;
-        // No torque of a symptom with these parameters is beyond.
-        let most_nm = settings.largest_torque_nm(None) + 10.0 * 3.0;
-        for (which, omega) in samples {
-            let nm = if let Some(x) = bad.get(which) {
-                let to = (phi, omega);
-                match which % 3 {
-                    0 => rig.step((phi, *x), to, 0.0),
-                    1 => rig.step((phi, omega), (phi, *x), 0.0),
-                    _ => rig.step((phi, omega), to, *x),
-                }
-            } else {
-                phi += 20.0 * omega * TICK_S;
-                rig.step((phi, omega), (phi, omega), omega * TICK_S)
-            };
-            prop_assert!(nm.is_finite() && nm.abs() <= most_nm, "{nm}");
-        }
-        for _ in 0..100 {
-            let nm = rig.step((phi, 0.5), (phi + 0.5 * TICK_S, 0.5), 0.5 * TICK_S);
-            phi += 0.5 * TICK_S;
-            prop_assert!(nm.is_finite());
-        }
-    }
-
-    #[test]
     fn a_wall_never_pulls_and_keeps_its_cap(
         x in prop::collection::vec(0.0..1.0_f64, 6),
         y in prop::collection::vec(0.0..1.0_f64, 6),
@@ -180,85 +120,5 @@ proptest! {
         let hand = Hand { angles: &angles, delay: 0, counts: false, commits: &commits, gaps: None };
         let (_, largest_nm) = excess::<f64>(before, &hand);
         prop_assert!(largest_nm <= cap(&before).max(cap(&after)) + 1e-9);
-    }
-
-    #[test]
-    fn flexors_are_the_mirror_image_of_extensors(
-        which in 0..4_usize,
-        x in prop::collection::vec(0.0..1.0_f64, 6),
-        points in points(),
-    ) {
-        // Mirrored about 60 deg.
-        let image = |deg: f64| 120.0 - deg;
-        let mut own = EffectSettings::default();
-        let mut other = own;
-        match which {
-            0 => {
-                let wall = symptom(0, &x).range_limit.unwrap();
-                own.range_limit = Some(wall);
-                other.range_limit = Some(RangeLimitSettings {
-                    extension_limit_deg: image(wall.flexion_limit_deg),
-                    flexion_limit_deg: image(wall.extension_limit_deg),
-                    ..wall
-                });
-            }
-            1 => {
-                let muscle = SpasticitySettings { muscles: 0, ..symptom(3, &x).spasticity.unwrap() };
-                own.spasticity = Some(muscle);
-                other.spasticity = Some(SpasticitySettings {
-                    muscles: 1,
-                    threshold_deg: image(muscle.threshold_deg),
-                    ..muscle
-                });
-            }
-            2 => {
-                let knife = ClaspKnifeSettings {
-                    muscles: 0,
-                    onset_deg: 30.0 + 20.0 * x[0],
-                    release_deg: 60.0 + 20.0 * x[1],
-                    ..symptom(4, &x).clasp_knife.unwrap()
-                };
-                own.clasp_knife = Some(knife);
-                other.clasp_knife = Some(ClaspKnifeSettings {
-                    muscles: 1,
-                    onset_deg: image(knife.onset_deg),
-                    release_deg: image(knife.release_deg),
-                    ..knife
-                });
-            }
-            _ => {
-                let clonus = ClonusSettings {
-                    hold_deg: 40.0 + 40.0 * x[0],
-                    start_velocity_deg_s: 20.0 + 100.0 * x[1],
-                    ..ClonusSettings::default()
-                };
-                own.clonus = Some(clonus);
-                other.clonus = Some(ClonusSettings {
-                    muscles: 1,
-                    hold_deg: image(clonus.hold_deg),
-                    ..clonus
-                });
-            }
-        }
-        let angles = hand(&points);
-        let middle = 60_f64.to_radians();
-        let (mut one, mut two) = (only::<f64>(own, 60.0), only::<f64>(other, 60.0));
-        let mut omega = 0.0;
-        for pair in angles.windows(2) {
-            let moved = pair[1] - pair[0];
-            let end = moved / TICK_S;
-            let nm = one.step((pair[0], omega), (pair[1], end), moved);
-            let mirrored = |rad: f64| 2.0 * middle - rad;
-            let image_nm = two.step((mirrored(pair[0]), -omega), (mirrored(pair[1]), -end), -moved);
-            prop_assert!((nm + image_nm).abs() < 1e-9, "{nm} {image_nm}");
-            // Both walls may have something to say in a tick.
-            let words = |rig: &Rig<f64>| {
-                let mut words: Vec<_> = rig.words.iter().map(|(word, _)| word.name()).collect();
-                words.sort_unstable();
-                words
-            };
-            prop_assert_eq!(words(&one), words(&two));
-            omega = end;
-        }
     }
 }

@@ -24,18 +24,13 @@ struct Case {
     torque_s: f64,
 }
 
-#[expect(clippy::too_many_lines, reason = "a table")]
 fn cases() -> Vec<Case> {
-    let none = EffectSettings::default;
     vec![
         Case {
-            settings: EffectSettings {
-                range_limit: Some(RangeLimitSettings {
-                    flexion_limit_deg: 60.0,
-                    ..RangeLimitSettings::default()
-                }),
-                ..none()
-            },
+            settings: on!(range_limit: RangeLimitSettings {
+                flexion_limit_deg: 60.0,
+                ..RangeLimitSettings::default()
+            }),
             from_deg: 58.0,
             strokes: &[(20.0, 0.3), (-20.0, 0.3)],
             phases: &[
@@ -48,55 +43,43 @@ fn cases() -> Vec<Case> {
             torque_s: 0.29,
         },
         Case {
-            settings: EffectSettings {
-                lead_pipe: Some(LeadPipeSettings {
-                    elastic_nm_per_rad: 1.0,
-                    // Both parts of the torque in one direction.
-                    neutral_deg: 0.0,
-                    ..LeadPipeSettings::default()
-                }),
-                ..none()
-            },
+            settings: on!(lead_pipe: LeadPipeSettings {
+                elastic_nm_per_rad: 1.0,
+                // Both parts of the torque in one direction.
+                neutral_deg: 0.0,
+                ..LeadPipeSettings::default()
+            }),
             from_deg: 20.0,
             strokes: &[(20.0, 0.2), (-20.0, 0.05)],
             phases: &[None, Some("sliding"), None],
             torque_s: 0.15,
         },
         Case {
-            settings: EffectSettings {
-                cogwheel: Some(CogwheelSettings {
-                    elastic_nm_per_rad: 1.0,
-                    // Both parts of the torque in one direction.
-                    neutral_deg: 0.0,
-                    ..CogwheelSettings::default()
-                }),
-                ..none()
-            },
+            settings: on!(cogwheel: CogwheelSettings {
+                elastic_nm_per_rad: 1.0,
+                // Both parts of the torque in one direction.
+                neutral_deg: 0.0,
+                ..CogwheelSettings::default()
+            }),
             from_deg: 20.0,
             strokes: &[(60.0, 0.2)],
             phases: &[Some("high"), None, Some("high")],
             torque_s: 0.07,
         },
         Case {
-            settings: EffectSettings {
-                spasticity: Some(SpasticitySettings::default()),
-                ..none()
-            },
+            settings: on!(spasticity: SpasticitySettings::default()),
             from_deg: 40.0,
             strokes: &[(90.0, 0.2), (-90.0, 0.3)],
             phases: &[None, Some("caught"), None],
             torque_s: 0.19,
         },
         Case {
-            settings: EffectSettings {
-                spasticity: Some(SpasticitySettings {
-                    form: 1,
-                    torque_nm: 0.5,
-                    velocity_shift_s: 0.1,
-                    ..SpasticitySettings::default()
-                }),
-                ..none()
-            },
+            settings: on!(spasticity: SpasticitySettings {
+                form: 1,
+                torque_nm: 0.5,
+                velocity_shift_s: 0.1,
+                ..SpasticitySettings::default()
+            }),
             from_deg: 60.0,
             strokes: &[(90.0, 0.4), (-90.0, 0.4)],
             phases: &[
@@ -109,20 +92,14 @@ fn cases() -> Vec<Case> {
             torque_s: 0.39,
         },
         Case {
-            settings: EffectSettings {
-                clasp_knife: Some(ClaspKnifeSettings::default()),
-                ..none()
-            },
+            settings: on!(clasp_knife: ClaspKnifeSettings::default()),
             from_deg: 25.0,
             strokes: &[(60.0, 1.0), (-120.0, 0.6)],
             phases: &[None, Some("building"), Some("fallen"), None],
             torque_s: 0.5,
         },
         Case {
-            settings: EffectSettings {
-                clonus: Some(ClonusSettings::default()),
-                ..none()
-            },
+            settings: on!(clonus: ClonusSettings::default()),
             from_deg: 40.0,
             // The joint is let go of in mid-beat.
             strokes: &[(150.0, 0.2), (-300.0, 0.15)],
@@ -130,13 +107,10 @@ fn cases() -> Vec<Case> {
             torque_s: 0.195,
         },
         Case {
-            settings: EffectSettings {
-                texture: Some(TextureSettings {
-                    irregularity: 0.0,
-                    ..TextureSettings::default()
-                }),
-                ..none()
-            },
+            settings: on!(texture: TextureSettings {
+                irregularity: 0.0,
+                ..TextureSettings::default()
+            }),
             from_deg: 20.2,
             strokes: &[(20.0, 0.04)],
             phases: &[None, Some("sliding")],
@@ -253,10 +227,7 @@ fn whatever_a_gap_hides_of_clonus_happens_in_its_time() {
 /// The first beat is due three ticks before the muscle is let go of, or three ticks after.
 #[test]
 fn a_beat_and_the_end_of_a_stretch_within_one_gap_come_in_their_order() {
-    let settings = EffectSettings {
-        clonus: Some(ClonusSettings::default()),
-        ..EffectSettings::default()
-    };
+    let settings = on!(clonus: ClonusSettings::default());
     // From 59 deg it passes 60 deg after 1/130 s, and the delay is 0.05 s.
     let beat_s = 1.0 / 130.0 + 0.05;
     for (ticks_later, told) in [
@@ -315,22 +286,16 @@ fn a_beat_and_the_end_of_a_stretch_within_one_gap_come_in_their_order() {
 #[test]
 fn a_decay_that_begins_within_a_gap_has_its_time() {
     let motion = ramp(20.0, 130.0);
-    let spastic = EffectSettings {
-        spasticity: Some(SpasticitySettings {
-            release_s: 0.02,
-            ..SpasticitySettings::default()
-        }),
-        ..EffectSettings::default()
-    };
-    let clasp_knife = EffectSettings {
-        clasp_knife: Some(ClaspKnifeSettings {
-            collapse_s: 0.01,
-            onset_deg: 25.0,
-            release_deg: 42.5,
-            ..ClaspKnifeSettings::default()
-        }),
-        ..EffectSettings::default()
-    };
+    let spastic = on!(spasticity: SpasticitySettings {
+        release_s: 0.02,
+        ..SpasticitySettings::default()
+    });
+    let clasp_knife = on!(clasp_knife: ClaspKnifeSettings {
+        collapse_s: 0.01,
+        onset_deg: 25.0,
+        release_deg: 42.5,
+        ..ClaspKnifeSettings::default()
+    });
     for settings in [spastic, clasp_knife] {
         let whole = only::<f64>(settings, 20.0).run(0.2, &motion);
         let mut rig = only::<f64>(settings, 20.0);
@@ -358,13 +323,10 @@ fn a_decay_that_begins_within_a_gap_has_its_time() {
 fn a_count_that_flickers_at_the_edge_of_a_tooth_gives_nothing_way() {
     let sensing =
         Sensing::of_encoder(&crepitus_model::control::encoder::EncoderSettings::default());
-    let settings = EffectSettings {
-        cogwheel: Some(CogwheelSettings {
-            mode: 1,
-            ..CogwheelSettings::default()
-        }),
-        ..EffectSettings::default()
-    };
+    let settings = on!(cogwheel: CogwheelSettings {
+        mode: 1,
+        ..CogwheelSettings::default()
+    });
     // A tooth of 7.5 deg is high for its first half.
     let edge = sensing.position::<f64>(3.75_f64.to_radians()).count;
     let mut rig = Rig::<f64>::new(settings, sensing, 0.0);

@@ -1,5 +1,6 @@
 //! Random symptoms, and hands.
 
+use super::rig::on;
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_model::render::effects::clasp_knife::ClaspKnifeSettings;
 use crepitus_model::render::effects::cogwheel::CogwheelSettings;
@@ -10,10 +11,8 @@ use crepitus_model::render::effects::texture::TextureSettings;
 use proptest::prelude::*;
 
 /// One symptom, with parameters from these shares of their ranges.
-#[expect(clippy::too_many_lines, reason = "a list of parameters")]
 pub(crate) fn symptom(kind: usize, x: &[f64]) -> EffectSettings {
     let at = |i: usize, low: f64, high: f64| low + (high - low) * x[i];
-    let none = EffectSettings::default();
     match kind {
         0 => {
             let loss = at(0, 0.1, 0.8);
@@ -22,95 +21,77 @@ pub(crate) fn symptom(kind: usize, x: &[f64]) -> EffectSettings {
             let most = (1000.0 * (1.0 - loss)).powi(2) - stiffness * stiffness;
             let stiffening = (0.99 * x[3] * most / (4.0 * cap)).min(5000.0);
             let low = at(4, -4.0, 90.0);
-            EffectSettings {
-                range_limit: Some(RangeLimitSettings {
-                    extension_limit_deg: low,
-                    flexion_limit_deg: low + at(5, 5.0, 40.0),
-                    extension_stiffness_nm_per_rad: stiffness,
-                    extension_stiffening_nm_per_rad2: stiffening,
-                    extension_loss: loss,
-                    extension_torque_nm: cap,
-                    flexion_stiffness_nm_per_rad: stiffness,
-                    flexion_stiffening_nm_per_rad2: stiffening,
-                    flexion_loss: loss,
-                    flexion_torque_nm: cap,
-                }),
-                ..none
-            }
+            on!(range_limit: RangeLimitSettings {
+                extension_limit_deg: low,
+                flexion_limit_deg: low + at(5, 5.0, 40.0),
+                extension_stiffness_nm_per_rad: stiffness,
+                extension_stiffening_nm_per_rad2: stiffening,
+                extension_loss: loss,
+                extension_torque_nm: cap,
+                flexion_stiffness_nm_per_rad: stiffness,
+                flexion_stiffening_nm_per_rad2: stiffening,
+                flexion_loss: loss,
+                flexion_torque_nm: cap,
+            })
         }
-        1 => EffectSettings {
-            lead_pipe: Some(LeadPipeSettings {
-                torque_nm: at(0, 0.1, 4.5),
-                presliding_deg: at(1, 0.3, 10.0),
-                ..LeadPipeSettings::default()
-            }),
-            ..none
-        },
-        2 => EffectSettings {
-            cogwheel: Some(CogwheelSettings {
-                mode: u8::from(x[0] > 0.5),
-                torque_nm: at(1, 0.1, 4.5),
-                presliding_deg: at(2, 0.3, 10.0),
-                low_share: x[3],
-                frequency_hz: at(4, 3.0, 12.0),
-                duty: at(5, 0.1, 0.9),
-                pitch_deg: at(4, 1.0, 30.0),
-                ..CogwheelSettings::default()
-            }),
-            ..none
-        },
-        3 => EffectSettings {
-            spasticity: Some(SpasticitySettings {
-                muscles: u8::from(x[0] > 0.5),
-                threshold_deg: at(1, 30.0, 90.0),
-                threshold_velocity_deg_s: at(2, 5.0, 60.0),
-                velocity_torque_nms_per_rad: at(3, 0.0, 2.0),
-                residual_share: x[4],
-                stiffness_nm_per_rad: at(5, 0.0, 10.0),
-                release_s: at(0, 0.01, 1.0),
-                catch_stiffness_nm_per_rad: at(1, 10.0, 300.0),
-                rearm_deg: at(2, 2.0, 30.0),
-                ..SpasticitySettings::default()
-            }),
-            ..none
-        },
+        1 => on!(lead_pipe: LeadPipeSettings {
+            torque_nm: at(0, 0.1, 4.5),
+            presliding_deg: at(1, 0.3, 10.0),
+            ..LeadPipeSettings::default()
+        }),
+        2 => on!(cogwheel: CogwheelSettings {
+            mode: u8::from(x[0] > 0.5),
+            torque_nm: at(1, 0.1, 4.5),
+            presliding_deg: at(2, 0.3, 10.0),
+            low_share: x[3],
+            frequency_hz: at(4, 3.0, 12.0),
+            duty: at(5, 0.1, 0.9),
+            pitch_deg: at(4, 1.0, 30.0),
+            ..CogwheelSettings::default()
+        }),
+        3 => on!(spasticity: SpasticitySettings {
+            muscles: u8::from(x[0] > 0.5),
+            threshold_deg: at(1, 30.0, 90.0),
+            threshold_velocity_deg_s: at(2, 5.0, 60.0),
+            velocity_torque_nms_per_rad: at(3, 0.0, 2.0),
+            residual_share: x[4],
+            stiffness_nm_per_rad: at(5, 0.0, 10.0),
+            release_s: at(0, 0.01, 1.0),
+            catch_stiffness_nm_per_rad: at(1, 10.0, 300.0),
+            rearm_deg: at(2, 2.0, 30.0),
+            ..SpasticitySettings::default()
+        }),
         4 => {
             let flexors = x[0] > 0.5;
             let (low, high) = (at(1, 20.0, 60.0), at(2, 61.0, 100.0));
-            EffectSettings {
-                clasp_knife: Some(ClaspKnifeSettings {
-                    muscles: u8::from(flexors),
-                    trigger: u8::from(x[3] > 0.5),
-                    onset_deg: if flexors { high } else { low },
-                    release_deg: if flexors { low } else { high },
-                    onset_torque_nm: at(4, 0.0, 4.5),
-                    slope_nm_per_rad: at(5, 0.0, 10.0),
-                    residual_share: at(0, 0.0, 0.9),
-                    collapse_s: at(1, 0.005, 0.3),
-                    rearm_deg: at(2, 2.0, 30.0),
-                    catch_stiffness_nm_per_rad: at(3, 10.0, 300.0),
-                    release_torque_nm: at(4, 0.2, 4.5),
-                }),
-                ..none
-            }
+            on!(clasp_knife: ClaspKnifeSettings {
+                muscles: u8::from(flexors),
+                trigger: u8::from(x[3] > 0.5),
+                onset_deg: if flexors { high } else { low },
+                release_deg: if flexors { low } else { high },
+                onset_torque_nm: at(4, 0.0, 4.5),
+                slope_nm_per_rad: at(5, 0.0, 10.0),
+                residual_share: at(0, 0.0, 0.9),
+                collapse_s: at(1, 0.005, 0.3),
+                rearm_deg: at(2, 2.0, 30.0),
+                catch_stiffness_nm_per_rad: at(3, 10.0, 300.0),
+                release_torque_nm: at(4, 0.2, 4.5),
+            })
         }
         _ => {
             let (pitch, width) = (at(0, 0.5, 15.0), at(1, 0.1, 1.0));
             let stiffness = at(2, 50.0, 400.0);
             let most = 0.5 * stiffness * width * pitch.to_radians();
             let base = at(3, 0.0, 1.0);
-            EffectSettings {
-                texture: Some(TextureSettings {
-                    base_nm: base,
-                    peak_nm: base + (2.0 * x[4]).min(most),
-                    pitch_deg: pitch,
-                    width_share: width,
-                    irregularity: 0.9 * x[5],
-                    stiffness_nm_per_rad: stiffness,
-                    ..TextureSettings::default()
-                }),
-                ..none
-            }
+            on!(texture: TextureSettings {
+                base_nm: base,
+                peak_nm: base + (2.0 * x[4]).min(most),
+                pitch_deg: pitch,
+                width_share: width,
+                irregularity: 0.9 * x[5],
+                stiffness_nm_per_rad: stiffness,
+                ..TextureSettings::default()
+            })
         }
     }
 }

@@ -17,25 +17,19 @@ const FILLED_TICKS: u32 = 101_000;
 fn any_symptom(kind: usize, x: &[f64]) -> EffectSettings {
     match kind.checked_sub(KINDS) {
         None => symptom(kind, x),
-        Some(0) => EffectSettings {
-            clonus: Some(ClonusSettings {
-                muscles: u8::from(x[0] > 0.5),
-                hold_deg: 60.0,
-                start_velocity_deg_s: 20.0 + 50.0 * x[1],
-                ..ClonusSettings::default()
-            }),
-            ..EffectSettings::default()
-        },
+        Some(0) => on!(clonus: ClonusSettings {
+            muscles: u8::from(x[0] > 0.5),
+            hold_deg: 60.0,
+            start_velocity_deg_s: 20.0 + 50.0 * x[1],
+            ..ClonusSettings::default()
+        }),
         Some(_) => {
             let caught = symptom(3, x).spasticity.unwrap();
-            EffectSettings {
-                spasticity: Some(SpasticitySettings {
-                    form: 1,
-                    velocity_shift_s: 0.3,
-                    ..caught
-                }),
-                ..EffectSettings::default()
-            }
+            on!(spasticity: SpasticitySettings {
+                form: 1,
+                velocity_shift_s: 0.3,
+                ..caught
+            })
         }
     }
 }

@@ -12,6 +12,17 @@ use crepitus_model::{Real, Sample, ShaftStep};
 pub(crate) const TICK_S: f64 = 5e-5;
 pub(crate) const SLEW_NM: f64 = 100.0 * TICK_S;
 
+/// Settings in which one symptom is on.
+macro_rules! on {
+    ($symptom:ident: $settings:expr) => {
+        crepitus_model::render::effects::EffectSettings {
+            $symptom: Some($settings),
+            ..Default::default()
+        }
+    };
+}
+pub(crate) use on;
+
 pub(crate) fn timing(sensing: Sensing) -> Timing {
     Timing {
         step_s: TICK_S,

@@ -1,6 +1,6 @@
 //! Settings that are refused: numbers out of range, and contradictions.
 
-use super::rig::{near, timing};
+use super::rig::{near, on, timing};
 use crepitus_model::SettingsError;
 use crepitus_model::parameters::Tabled;
 use crepitus_model::render::effects::clasp_knife::{ClaspKnife, ClaspKnifeSettings};
@@ -41,34 +41,13 @@ where
 
 #[test]
 fn a_number_outside_its_range_is_refused() {
-    keeps_its_ranges::<_, RangeLimit<f64>>(|s| EffectSettings {
-        range_limit: Some(s),
-        ..EffectSettings::default()
-    });
-    keeps_its_ranges::<_, LeadPipe<f64>>(|s| EffectSettings {
-        lead_pipe: Some(s),
-        ..EffectSettings::default()
-    });
-    keeps_its_ranges::<_, Cogwheel<f64>>(|s| EffectSettings {
-        cogwheel: Some(s),
-        ..EffectSettings::default()
-    });
-    keeps_its_ranges::<_, Spasticity<f64>>(|s| EffectSettings {
-        spasticity: Some(s),
-        ..EffectSettings::default()
-    });
-    keeps_its_ranges::<_, ClaspKnife<f64>>(|s| EffectSettings {
-        clasp_knife: Some(s),
-        ..EffectSettings::default()
-    });
-    keeps_its_ranges::<_, Clonus<f64>>(|s| EffectSettings {
-        clonus: Some(s),
-        ..EffectSettings::default()
-    });
-    keeps_its_ranges::<_, Texture<f64>>(|s| EffectSettings {
-        texture: Some(s),
-        ..EffectSettings::default()
-    });
+    keeps_its_ranges::<_, RangeLimit<f64>>(|s| on!(range_limit: s));
+    keeps_its_ranges::<_, LeadPipe<f64>>(|s| on!(lead_pipe: s));
+    keeps_its_ranges::<_, Cogwheel<f64>>(|s| on!(cogwheel: s));
+    keeps_its_ranges::<_, Spasticity<f64>>(|s| on!(spasticity: s));
+    keeps_its_ranges::<_, ClaspKnife<f64>>(|s| on!(clasp_knife: s));
+    keeps_its_ranges::<_, Clonus<f64>>(|s| on!(clonus: s));
+    keeps_its_ranges::<_, Texture<f64>>(|s| on!(texture: s));
 }
 
 fn is_refused(settings: EffectSettings) -> bool {
@@ -89,15 +68,12 @@ fn a_blade_falls_beyond_its_onset() {
         (1, 40.0, 40.0, true),
         (1, 40.0, 40.5, true),
     ] {
-        let settings = EffectSettings {
-            clasp_knife: Some(ClaspKnifeSettings {
-                muscles,
-                onset_deg,
-                release_deg,
-                ..ClaspKnifeSettings::default()
-            }),
-            ..EffectSettings::default()
-        };
+        let settings = on!(clasp_knife: ClaspKnifeSettings {
+            muscles,
+            onset_deg,
+            release_deg,
+            ..ClaspKnifeSettings::default()
+        });
         assert_eq!(is_refused(settings), refused, "{muscles} {release_deg}");
     }
 }
@@ -105,21 +81,15 @@ fn a_blade_falls_beyond_its_onset() {
 #[test]
 fn beats_and_seeds_are_whole_numbers() {
     for (number, refused) in [(0.0, false), (3.0, false), (2.5, true), (0.5, true)] {
-        let settings = EffectSettings {
-            clonus: Some(ClonusSettings {
-                beats: number,
-                ..ClonusSettings::default()
-            }),
-            ..EffectSettings::default()
-        };
+        let settings = on!(clonus: ClonusSettings {
+            beats: number,
+            ..ClonusSettings::default()
+        });
         assert_eq!(is_refused(settings), refused, "{number} beats");
-        let settings = EffectSettings {
-            texture: Some(TextureSettings {
-                seed: number,
-                ..TextureSettings::default()
-            }),
-            ..EffectSettings::default()
-        };
+        let settings = on!(texture: TextureSettings {
+            seed: number,
+            ..TextureSettings::default()
+        });
         assert_eq!(is_refused(settings), refused, "seed {number}");
     }
 }
@@ -127,14 +97,11 @@ fn beats_and_seeds_are_whole_numbers() {
 #[test]
 fn ends_of_a_range_are_five_degrees_apart() {
     for (flexion_limit_deg, refused) in [(25.0, false), (24.9, true), (15.0, true)] {
-        let settings = EffectSettings {
-            range_limit: Some(RangeLimitSettings {
-                extension_limit_deg: 20.0,
-                flexion_limit_deg,
-                ..RangeLimitSettings::default()
-            }),
-            ..EffectSettings::default()
-        };
+        let settings = on!(range_limit: RangeLimitSettings {
+            extension_limit_deg: 20.0,
+            flexion_limit_deg,
+            ..RangeLimitSettings::default()
+        });
         assert_eq!(is_refused(settings), refused, "{flexion_limit_deg}");
     }
 }
@@ -148,30 +115,24 @@ fn a_reflex_that_would_give_energy_at_every_speed_is_refused() {
         (1, 0.05, true),
         (0, 0.0, false),
     ] {
-        let settings = EffectSettings {
-            spasticity: Some(SpasticitySettings {
-                form,
-                velocity_shift_s,
-                delay_s: 0.0625,
-                activation_s: 0.0125,
-                ..SpasticitySettings::default()
-            }),
-            ..EffectSettings::default()
-        };
+        let settings = on!(spasticity: SpasticitySettings {
+            form,
+            velocity_shift_s,
+            delay_s: 0.0625,
+            activation_s: 0.0125,
+            ..SpasticitySettings::default()
+        });
         assert_eq!(is_refused(settings), refused, "{form} {velocity_shift_s}");
     }
     // As people write them: the least shift, whose sum is a rounding more.
     for (delay_s, activation_s, velocity_shift_s) in [(0.05, 0.01, 0.06), (0.05, 0.1, 0.15)] {
-        let settings = EffectSettings {
-            spasticity: Some(SpasticitySettings {
-                form: 1,
-                velocity_shift_s,
-                delay_s,
-                activation_s,
-                ..SpasticitySettings::default()
-            }),
-            ..EffectSettings::default()
-        };
+        let settings = on!(spasticity: SpasticitySettings {
+            form: 1,
+            velocity_shift_s,
+            delay_s,
+            activation_s,
+            ..SpasticitySettings::default()
+        });
         assert!(!is_refused(settings), "{delay_s} + {activation_s}");
     }
 }
@@ -179,17 +140,14 @@ fn a_reflex_that_would_give_energy_at_every_speed_is_refused() {
 #[test]
 fn asperities_rise_and_are_no_steeper_than_their_spring() {
     let rough = |base_nm, peak_nm, pitch_deg: f64, width_share, stiffness_nm_per_rad| {
-        is_refused(EffectSettings {
-            texture: Some(TextureSettings {
-                base_nm,
-                peak_nm,
-                pitch_deg,
-                width_share,
-                stiffness_nm_per_rad,
-                ..TextureSettings::default()
-            }),
-            ..EffectSettings::default()
-        })
+        is_refused(on!(texture: TextureSettings {
+            base_nm,
+            peak_nm,
+            pitch_deg,
+            width_share,
+            stiffness_nm_per_rad,
+            ..TextureSettings::default()
+        }))
     };
     // 2·0.5 N·m over 0.5·2 deg.
     let steepest = 1.0 / 1_f64.to_radians();
@@ -205,24 +163,18 @@ fn the_spring_beside_a_play_counts_in_its_stiffness_and_slope() {
     let (pipe, wheel) = (LeadPipeSettings::default(), CogwheelSettings::default());
     for (settings, torque_nm, presliding_deg) in [
         (
-            EffectSettings {
-                lead_pipe: Some(LeadPipeSettings {
-                    elastic_nm_per_rad,
-                    ..pipe
-                }),
-                ..EffectSettings::default()
-            },
+            on!(lead_pipe: LeadPipeSettings {
+                elastic_nm_per_rad,
+                ..pipe
+            }),
             pipe.torque_nm,
             pipe.presliding_deg,
         ),
         (
-            EffectSettings {
-                cogwheel: Some(CogwheelSettings {
-                    elastic_nm_per_rad,
-                    ..wheel
-                }),
-                ..EffectSettings::default()
-            },
+            on!(cogwheel: CogwheelSettings {
+                elastic_nm_per_rad,
+                ..wheel
+            }),
             wheel.torque_nm,
             wheel.presliding_deg,
         ),

@@ -27,29 +27,14 @@ fn what_gives_no_energy_neither_fills_the_tank_nor_is_paid_from_it() {
     });
     let none = EffectSettings::default;
     for passive in [
-        EffectSettings {
-            lead_pipe: Some(LeadPipeSettings::default()),
-            ..none()
-        },
-        EffectSettings {
-            cogwheel: Some(CogwheelSettings::default()),
-            ..none()
-        },
-        EffectSettings {
-            texture: Some(TextureSettings::default()),
-            ..none()
-        },
-        EffectSettings {
-            clasp_knife: Some(ClaspKnifeSettings::default()),
-            ..none()
-        },
-        EffectSettings {
-            range_limit: Some(RangeLimitSettings {
-                flexion_limit_deg: 60.0,
-                ..RangeLimitSettings::default()
-            }),
-            ..none()
-        },
+        on!(lead_pipe: LeadPipeSettings::default()),
+        on!(cogwheel: CogwheelSettings::default()),
+        on!(texture: TextureSettings::default()),
+        on!(clasp_knife: ClaspKnifeSettings::default()),
+        on!(range_limit: RangeLimitSettings {
+            flexion_limit_deg: 60.0,
+            ..RangeLimitSettings::default()
+        }),
     ] {
         let settings = [
             EffectSettings {

@@ -53,15 +53,12 @@ const NOTHING: [(Word, f64); 0] = [];
 const BOTH: [(u8, i32); 2] = [(0, 1), (1, -1)];
 
 fn knife(muscles: u8) -> EffectSettings {
-    EffectSettings {
-        clasp_knife: Some(ClaspKnifeSettings {
-            muscles,
-            onset_deg: 40.0,
-            release_deg: if muscles == 0 { 90.0 } else { 10.0 },
-            ..ClaspKnifeSettings::default()
-        }),
-        ..EffectSettings::default()
-    }
+    on!(clasp_knife: ClaspKnifeSettings {
+        muscles,
+        onset_deg: 40.0,
+        release_deg: if muscles == 0 { 90.0 } else { 10.0 },
+        ..ClaspKnifeSettings::default()
+    })
 }
 
 #[test]
@@ -97,20 +94,17 @@ fn a_blade_builds_from_its_onset_on() {
 
 /// 1000 ticks a beat, without delay, about 0 deg.
 fn clonus(muscles: u8) -> EffectSettings {
-    EffectSettings {
-        clonus: Some(ClonusSettings {
-            muscles,
-            frequency_hz: 5.0,
-            push_share: 0.25,
-            first_stretch: 0.0,
-            hold_deg: 0.0,
-            hysteresis_deg: 5.0,
-            start_velocity_deg_s: 100.0,
-            delay_s: 0.0,
-            ..ClonusSettings::default()
-        }),
-        ..EffectSettings::default()
-    }
+    on!(clonus: ClonusSettings {
+        muscles,
+        frequency_hz: 5.0,
+        push_share: 0.25,
+        first_stretch: 0.0,
+        hold_deg: 0.0,
+        hysteresis_deg: 5.0,
+        start_velocity_deg_s: 100.0,
+        delay_s: 0.0,
+        ..ClonusSettings::default()
+    })
 }
 
 #[test]
@@ -173,16 +167,13 @@ fn a_muscle_is_let_go_of_where_the_hysteresis_ends() {
 
 /// Catches from 40 deg on, at 40 deg/s.
 fn caught(muscles: u8) -> EffectSettings {
-    EffectSettings {
-        spasticity: Some(SpasticitySettings {
-            muscles,
-            threshold_deg: 40.0,
-            velocity_shift_s: 0.0,
-            threshold_velocity_deg_s: 40.0,
-            ..SpasticitySettings::default()
-        }),
-        ..EffectSettings::default()
-    }
+    on!(spasticity: SpasticitySettings {
+        muscles,
+        threshold_deg: 40.0,
+        velocity_shift_s: 0.0,
+        threshold_velocity_deg_s: 40.0,
+        ..SpasticitySettings::default()
+    })
 }
 
 #[test]
@@ -231,10 +222,7 @@ fn reflex() -> SpasticitySettings {
 }
 
 fn with_reflex(reflex: SpasticitySettings) -> EffectSettings {
-    EffectSettings {
-        spasticity: Some(reflex),
-        ..EffectSettings::default()
-    }
+    on!(spasticity: reflex)
 }
 
 /// The torque after so many ticks at rest at this count.
@@ -314,10 +302,7 @@ fn a_commit_leaves_a_reflex_what_it_was_told_and_other_muscles_nothing() {
 
 #[test]
 fn a_joint_that_enters_from_the_wall_itself_is_pushed_from_there() {
-    let wall = EffectSettings {
-        range_limit: Some(RangeLimitSettings::default()),
-        ..EffectSettings::default()
-    };
+    let wall = on!(range_limit: RangeLimitSettings::default());
     for (deg, along) in [(120.0, 1), (10.0, -1)] {
         let rad_s = f64::from(along);
         let mut rig = armed(wall, place(deg, 0));
@@ -336,13 +321,10 @@ fn a_joint_that_enters_from_the_wall_itself_is_pushed_from_there() {
 #[test]
 fn a_wall_is_left_once_the_joint_is_out_of_it_by_more_than_noise() {
     let sensing = Sensing::of_encoder(&EncoderSettings::default());
-    let wall = EffectSettings {
-        range_limit: Some(RangeLimitSettings {
-            flexion_limit_deg: 60.0,
-            ..RangeLimitSettings::default()
-        }),
-        ..EffectSettings::default()
-    };
+    let wall = on!(range_limit: RangeLimitSettings {
+        flexion_limit_deg: 60.0,
+        ..RangeLimitSettings::default()
+    });
     let limit_rad = 60_f64.to_radians();
     let at_wall = (limit_rad / sensing.rad_per_count).ceil() as i32;
     let mut count = at_wall - 10;
@@ -380,10 +362,7 @@ fn a_wall_that_is_moved_under_a_joint_at_rest_begins_there() {
         flexion_limit_deg,
         ..RangeLimitSettings::default()
     };
-    let with = |wall| EffectSettings {
-        range_limit: Some(wall),
-        ..EffectSettings::default()
-    };
+    let with = |wall| on!(range_limit: wall);
     let mut rig = armed(with(wall(120.0)), place(60.0, 0));
     // Somewhere else than where it was armed.
     go(&mut rig, place(60.0, 5_000), 5_000, (0.0, 0.0));

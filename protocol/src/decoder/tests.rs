@@ -121,25 +121,6 @@ fn a_message_with_bytes_left_over_is_none() {
 }
 
 #[test]
-fn garbage_before_the_first_frame_costs_at_most_that_frame() {
-    let good = encode_body(&body(40)).unwrap();
-    for garbage in [
-        &b"\x05hello"[..],
-        &[255; 1000],
-        &[0, 0, 0],
-        &[1, 0, 1, 0],
-        &[0],
-    ] {
-        let mut bytes = garbage.to_vec();
-        bytes.extend(&good);
-        bytes.extend(&good);
-        let (bodies, _) = decode(&mut Decoder::new(), &bytes);
-        assert_eq!(bodies.last(), Some(&body(40)));
-        assert!(!bodies.is_empty() && bodies.len() <= 2);
-    }
-}
-
-#[test]
 fn a_frame_that_never_ends_is_overlong_and_the_next_is_received() {
     let mut bytes = std::vec![7; FRAME_BYTES + 1];
     bytes.push(0);
@@ -164,17 +145,6 @@ fn a_decoder_recovers_from_a_disconnect() {
 }
 
 proptest! {
-    /// Any bytes, cut anywhere: no panic, and a good frame behind a
-    /// delimiter is always received.
-    #[test]
-    fn resynchronises(noise: Vec<u8>, length in 2_usize..=BODY_BYTES) {
-        let mut bytes = noise;
-        bytes.push(0);
-        bytes.extend(encode_body(&body(length)).unwrap());
-        let (bodies, _) = decode(&mut Decoder::new(), &bytes);
-        prop_assert_eq!(bodies.last(), Some(&body(length)));
-    }
-
     /// Checks that, whatever stands between two delimiters, a body is found where another
     /// implementation finds one, the same.
     #[test]

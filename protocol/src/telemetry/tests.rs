@@ -23,68 +23,6 @@ fn a_tick_has_its_sample_and_its_phases() {
 }
 
 #[test]
-fn phases_of_effects_are_the_same_on_the_wire() {
-    for bits in [0, 1, 0x8421, u16::MAX] {
-        let phases = EffectPhases::from(Phases(bits));
-        assert_eq!(Phases::from(phases), Phases(bits));
-        assert_eq!(phases.bytes(), bits.to_le_bytes());
-    }
-}
-
-#[test]
-fn samples_are_of_fixed_width() {
-    let mut bytes = [0; 32];
-    for (count, current_ma) in [(0, 0), (i32::MIN, i16::MIN), (i32::MAX, i16::MAX)] {
-        let sample = Sample {
-            count,
-            model_torque_nm: f32::MAX,
-            torque_nm: f32::NAN,
-            current_ma,
-            flags: SampleFlags(u16::MAX),
-        };
-        assert_eq!(
-            postcard::to_slice(&sample, &mut bytes).unwrap().len(),
-            SAMPLE_BYTES
-        );
-        assert_eq!(bytes[..SAMPLE_BYTES], sample.bytes());
-    }
-}
-
-#[test]
-fn a_block_is_its_head_with_the_currents_of_the_coil_its_samples_and_its_phases() {
-    let mut block = Block {
-        sequence: 700,
-        first_tick: 1 << 40,
-        revision: Revision(300),
-        dropped: 20,
-        flags: BlockFlags(7),
-        samples: [Sample::default(); BLOCK_SAMPLES],
-        phases: core::array::from_fn(|n| EffectPhases(u16::MAX >> (n % 16))),
-        coil_currents: [-1, 1_500, NO_CURRENT, 7].map(CoilCurrent),
-    };
-    for (sample, n) in block.samples.iter_mut().zip(1..) {
-        (sample.count, sample.torque_nm) = (-n, 0.1);
-    }
-    let mut bytes = [0; 512];
-    let whole = postcard::to_slice(&block, &mut bytes).unwrap().to_vec();
-    let mut pieces = postcard::to_slice(&block.head(), &mut bytes)
-        .unwrap()
-        .to_vec();
-    for sample in &block.samples {
-        pieces.extend(sample.bytes());
-    }
-    for phases in block.phases {
-        pieces.extend(phases.bytes());
-    }
-    assert_eq!(whole, pieces);
-    let amperes = block.coil_currents.map(CoilCurrent::amperes);
-    assert_eq!(
-        amperes,
-        [Some(-0.001), Some(1.500_000_1), None, Some(0.007)]
-    );
-}
-
-#[test]
 fn a_block_costs_at_most_seven_percent_more_than_its_ticks() {
     // After twenty days, with a busy afternoon of commits and losses.
     let block = Block {

@@ -226,12 +226,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_slip_of_the_finger_leads_to_the_name() {
-        assert_eq!(similar_name("slow-examinatoin"), Some("slow-examination"));
-        assert_eq!(similar_name("no-such-scene"), None);
-    }
-
-    #[test]
     fn every_scene_in_the_folder_ships_and_reads() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
         let mut files: Vec<_> = std::fs::read_dir(folder)

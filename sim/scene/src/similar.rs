@@ -18,25 +18,3 @@ pub fn question(name: Option<&str>) -> String {
     name.map(|name| format!(" (did you mean {name}?)"))
         .unwrap_or_default()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_slip_of_the_finger_leads_to_the_name() {
-        let names = ["slow-examination", "tardieu-fast"];
-        for (given, meant) in [
-            ("slow-examinatoin", Some("slow-examination")),
-            ("Slow-Examination", Some("slow-examination")),
-            ("tardieu-fats", Some("tardieu-fast")),
-            ("", None),
-            ("q", None),
-            ("no-such-scene", None),
-        ] {
-            assert_eq!(similar(names.into_iter(), given), meant, "{given:?}");
-        }
-        assert_eq!(question(Some("a")), " (did you mean a?)");
-        assert_eq!(question(None), "");
-    }
-}

@@ -87,37 +87,6 @@ fn sign_scale_and_offset_act_on_the_angle_alone() {
 }
 
 #[test]
-fn a_repeated_cycle_is_the_interior_of_a_long_file() {
-    let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), "cycle.csv", 1);
-    write(folder.path(), "long.csv", 20);
-    let keys = "sign = -1\noffset_deg = 5";
-    let repeated = format!("{keys}\nrepeat = true");
-    let short = scene(folder.path(), "cycle.csv", 22.0, &repeated).unwrap();
-    let long = scene(folder.path(), "long.csv", 22.0, keys).unwrap();
-    let mut worst = [0.0_f64; 3];
-    for i in 0..4_000 {
-        let t = 4.0 + f64::from(i) * 3.3e-3;
-        let (a, b) = (short.motion.at(t), long.motion.at(t));
-        let off = [
-            a.phi_rad - b.phi_rad,
-            a.omega_rad_s - b.omega_rad_s,
-            a.omega_dot - b.omega_dot,
-        ];
-        for (worst, off) in worst.iter_mut().zip(off) {
-            *worst = worst.max(off.abs());
-        }
-    }
-    println!("off by {worst:?}");
-    assert!(
-        worst[0] < 1e-12 && worst[1] < 1e-10 && worst[2] < 1e-8,
-        "{worst:?}"
-    );
-    // Shorter than one cycle is fine, too.
-    scene(folder.path(), "cycle.csv", 0.3, &repeated).unwrap();
-}
-
-#[test]
 fn joints_break_in_every_cycle_alike_under_every_kind_of_solver() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "cycle.csv", 1);

@@ -17,10 +17,6 @@ const PIPE: Token = Token {
 };
 const ACK: Handshake = Handshake::Ack(Packet::EMPTY);
 
-fn ack(data: &[u8]) -> Handshake {
-    Handshake::Ack(Packet::new(data).expect("it fits"))
-}
-
 fn endpoint_in(index: usize) -> EndpointAddress {
     EndpointAddress::from_parts(index, UsbDirection::In)
 }
@@ -71,40 +67,6 @@ fn endpoints_are_given_once() {
         assert_eq!(allocate(None), Ok(endpoint_in(index)));
     }
     assert_eq!(allocate(None), Err(UsbError::EndpointOverflow));
-}
-
-#[test]
-fn an_in_endpoint_holds_one_packet_and_reports_once_that_it_has_gone() {
-    let (bus, mut cable) = ready();
-    assert_eq!(cable.in_transaction(PIPE), Handshake::Nak);
-    assert_eq!(bus.write(endpoint_in(1), b"one"), Ok(3));
-    assert_eq!(bus.write(endpoint_in(1), b"two"), Err(UsbError::WouldBlock));
-    assert_eq!(events(&bus), (0, 0, 0));
-    assert_eq!(cable.in_transaction(PIPE), ack(b"one"));
-    assert_eq!(events(&bus), (0, 0b10, 0));
-    assert_eq!(events(&bus), (0, 0, 0));
-    assert_eq!(bus.write(endpoint_in(1), &[]), Ok(0));
-    assert_eq!(cable.in_transaction(PIPE), ACK, "a zero-length packet");
-    assert_eq!(cable.in_transaction(PIPE), Handshake::Nak);
-}
-
-#[test]
-fn an_out_endpoint_holds_one_packet_and_reports_it_until_it_is_read() {
-    let (bus, mut cable) = ready();
-    let mut buffer = [0; 64];
-    assert_eq!(
-        bus.read(endpoint_out(1), &mut buffer),
-        Err(UsbError::WouldBlock)
-    );
-    assert_eq!(cable.out_transaction(PIPE, b"one"), ACK);
-    assert_eq!(cable.out_transaction(PIPE, b"two"), Handshake::Nak);
-    assert_eq!(events(&bus), (0b10, 0, 0));
-    assert_eq!(events(&bus), (0b10, 0, 0));
-    assert_eq!(bus.read(endpoint_out(1), &mut buffer), Ok(3));
-    assert_eq!(&buffer[..3], b"one");
-    assert_eq!(events(&bus), (0, 0, 0));
-    assert_eq!(cable.out_transaction(PIPE, &[]), ACK);
-    assert_eq!(bus.read(endpoint_out(1), &mut buffer), Ok(0));
 }
 
 #[test]
@@ -182,74 +144,4 @@ fn a_setup_ends_what_the_control_endpoint_was_doing() {
     assert_eq!(buffer, [2; 8]);
     assert_eq!(cable.out_transaction(CONTROL, b"data"), ACK);
     assert_eq!(events(&bus), (1, 0, 0));
-}
-
-#[test]
-fn a_halt_keeps_the_packet() {
-    let (bus, mut cable) = ready();
-    assert_eq!(bus.write(endpoint_in(1), b"kept"), Ok(4));
-    bus.set_stalled(endpoint_in(1), true);
-    assert!(bus.is_stalled(endpoint_in(1)) && !bus.is_stalled(endpoint_out(1)));
-    assert_eq!(cable.in_transaction(PIPE), Handshake::Stall);
-    bus.set_stalled(endpoint_in(1), false);
-    assert_eq!(cable.in_transaction(PIPE), ack(b"kept"));
-}
-
-#[test]
-fn a_reset_clears_everything_once_the_device_has_dealt_with_it() {
-    let (bus, mut cable) = ready();
-    bus.set_device_address(9);
-    let addressed = Token { address: 9, ..PIPE };
-    assert_eq!(bus.write(endpoint_in(1), b"old"), Ok(3));
-    assert_eq!(cable.in_transaction(addressed), ack(b"old"));
-    assert_eq!(bus.write(endpoint_in(1), b"old"), Ok(3));
-    assert_eq!(cable.out_transaction(addressed, b"old"), ACK);
-
-    cable.bus_reset();
-    assert_eq!(cable.in_transaction(addressed), Handshake::Absent);
-    assert!(matches!(bus.poll(), PollResult::Reset));
-    cable.bus_reset(); // another one before the device has set itself up
-    bus.reset();
-    assert_eq!(cable.in_transaction(PIPE), Handshake::Absent);
-    assert!(matches!(bus.poll(), PollResult::Reset));
-    assert_eq!(cable.in_transaction(PIPE), Handshake::Absent);
-    bus.reset();
-    assert_eq!(cable.in_transaction(PIPE), Handshake::Nak);
-    assert_eq!(events(&bus), (0, 0, 0));
-}
-
-#[test]
-fn an_idle_bus_is_a_suspend_after_what_came_before_it() {
-    let (bus, mut cable) = ready();
-    assert_eq!(cable.out_transaction(PIPE, b"last"), ACK);
-    cable.suspend();
-    assert_eq!(cable.in_transaction(PIPE), Handshake::Absent);
-    assert_eq!(events(&bus), (0b10, 0, 0));
-    assert_eq!(bus.read(endpoint_out(1), &mut [0; 64]), Ok(4));
-    assert!(matches!(bus.poll(), PollResult::Suspend));
-    assert!(matches!(bus.poll(), PollResult::None));
-    cable.resume();
-    assert!(matches!(bus.poll(), PollResult::Resume));
-    assert_eq!(cable.in_transaction(PIPE), Handshake::Nak);
-}
-
-#[test]
-fn a_pulled_cable_needs_a_reset_to_work_again() {
-    let (bus, mut cable) = ready();
-    cable.unplug();
-    assert!(!cable.is_connected());
-    assert!(matches!(bus.poll(), PollResult::Suspend));
-    cable.bus_reset();
-    cable.resume();
-    assert!(
-        matches!(bus.poll(), PollResult::None),
-        "nothing gets through"
-    );
-    cable.plug_in();
-    assert!(cable.is_connected());
-    assert_eq!(cable.in_transaction(PIPE), Handshake::Absent);
-    cable.bus_reset();
-    assert!(matches!(bus.poll(), PollResult::Reset));
-    bus.reset();
-    assert_eq!(cable.in_transaction(PIPE), Handshake::Nak);
 }

@@ -1,10 +1,10 @@
 //! Arming and the lease.
 
-use crate::support::{Port, client, connected, device, ms, pump_for, refusal, turning};
+use crate::support::{client, connected, ms, pump_for, refusal, turning};
 use crepitus_client::{Error, Event, Transport};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::host::Refusal;
-use crepitus_protocol::{Fault, Session, State};
+use crepitus_protocol::{Fault, State};
 
 #[test]
 fn arm_is_armed_and_stays_so_while_it_is_pumped() {
@@ -76,78 +76,6 @@ fn without_pump_the_lease_expires() {
     client.zero().unwrap();
     client.arm().unwrap();
     assert_eq!(client.status().unwrap().state, State::Armed);
-}
-
-#[test]
-fn a_lease_is_alive_for_a_quarter_of_a_second() {
-    let (shared, mut client) = connected();
-    client.zero().unwrap();
-    client.arm().unwrap();
-    pump_for(&mut client, ms(200));
-    // The last renewal is at most 50 ms old.
-    client.transport_mut().wait(ms(190));
-    assert_eq!(shared.borrow().drive.state(), State::Armed);
-    pump_for(&mut client, ms(100));
-    assert!(client.is_armed());
-}
-
-#[test]
-fn any_host_can_stop() {
-    let (shared, port) = device();
-    let mut owner = client(port, 1);
-    owner.zero().unwrap();
-    owner.arm().unwrap();
-    pump_for(&mut owner, ms(10));
-    let mut other = client(Port::new(&shared), 2);
-    other.stop().unwrap();
-    other.transport_mut().wait(ms(5));
-    assert_eq!(shared.borrow().drive.state(), State::Disarmed);
-    let events = pump_for(&mut owner, ms(150));
-    let [Event::State(change)] = &events[..] else {
-        panic!("{events:?}");
-    };
-    assert_eq!(
-        (change.before.state, change.now.state, change.now.lease),
-        (State::Armed, State::Disarmed, None)
-    );
-    assert!(!owner.is_armed());
-    // A stop is no fault, so there is nothing to clear.
-    owner.zero().unwrap();
-    owner.arm().unwrap();
-}
-
-#[test]
-fn one_host_has_the_lease_and_the_others_are_refused() {
-    let (shared, port) = device();
-    let mut first = client(port, 1);
-    let mut second = client(Port::new(&shared), 0xfeed);
-    first.zero().unwrap();
-    first.arm().unwrap();
-    let error = second.arm().unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "`arm` is rejected: another program (session 00000001) has armed the device; \
-         end that program, or run `crepitus stop`"
-    );
-    for refused in [
-        refusal(second.zero()),
-        refusal(second.save()),
-        refusal(second.clear_fault()),
-        refusal(second.disarm()),
-    ] {
-        assert_eq!(refused, Refusal::Leased { by: Session(1) });
-    }
-    assert!(!second.is_armed());
-    assert_eq!(second.tally().renewals, 0);
-    // Looking is free, and so is changing parameters.
-    second.set(&[(4, 0.5)]).unwrap();
-    assert_eq!(second.status().unwrap().lease, Some(Session(1)));
-    pump_for(&mut first, ms(100));
-    assert!(first.is_armed());
-    first.disarm().unwrap();
-    second.zero().unwrap();
-    second.arm().unwrap();
-    assert_eq!(second.status().unwrap().lease, Some(second.session()));
 }
 
 #[test]

@@ -1,40 +1,10 @@
 //! Discovery, handshake and compatibility.
 
-use crate::support::{Port, client, device, golden, ms, options, pump_for};
+use crate::support::{Port, client, device, golden, ms, options};
 use crepitus_client::Transport as _;
 use crepitus_client::{Client, Error, Management, RequestKind};
-use crepitus_protocol::management::{ResetCause, Role};
+use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::{State, schema};
-
-#[test]
-fn a_device_reports_its_identity() {
-    let (_, port) = device();
-    let client = client(port, 1);
-    let handshake = client.handshake();
-    assert_eq!(handshake.comms.role, Role::Comms);
-    assert_eq!(handshake.drive.unwrap().role, Role::Drive);
-    assert_eq!(handshake.mismatch(), None);
-    assert_eq!(handshake.comms.schema, schema::HASH);
-    // Just after power-on comms has to identify the drive first.
-    assert!(client.now() < ms(300), "{:?}", client.now());
-    assert_eq!(client.tally().discarded_frames, 0);
-}
-
-#[test]
-fn garbage_before_the_first_frame_does_no_harm() {
-    let (shared, port) = device();
-    {
-        let mut device = shared.borrow_mut();
-        device.hear(&[0x55; 700]);
-        device.hear(b"AT\r\n");
-        device.waiting(0).extend([0xaa; 3_000]);
-        device.waiting(0).extend(b"\x05boot\n");
-    }
-    let client = client(port, 1);
-    assert!(client.handshake().drive.is_some());
-    assert!(client.tally().repeats <= 1);
-    assert_eq!(client.tally().discarded_frames, 1);
-}
 
 #[test]
 fn a_silent_device_is_a_timeout() {
@@ -138,22 +108,4 @@ fn a_drive_with_another_schema_is_a_fault_but_no_mismatch() {
     assert!(mismatch.to_string().contains("flash `firmware/drive`"));
     let error = client.arm().unwrap_err().to_string();
     assert!(error.contains("version-mismatch (fault 36"), "{error}");
-}
-
-#[test]
-fn a_reboot_restarts_both_controllers() {
-    let (shared, port) = device();
-    let mut client = client(port, 1);
-    client.zero().unwrap();
-    client.reboot().unwrap();
-    pump_for(&mut client, ms(50));
-    let error = client.status().unwrap_err();
-    assert!(error.to_string().contains("it has restarted"), "{error}");
-    let status = client.reconnect(ms(500)).unwrap().status;
-    assert!(status.uptime_ms < 100 && !status.zeroed, "{status:?}");
-    assert_eq!(
-        client.identify().unwrap().drive.unwrap().reset,
-        ResetCause::Requested
-    );
-    assert_eq!(shared.borrow().comms_identity.reset, ResetCause::Requested);
 }

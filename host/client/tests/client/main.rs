@@ -13,7 +13,5 @@ mod connect;
 mod parameters;
 mod reconnect;
 mod repeats;
-#[cfg(unix)]
-mod serial;
 mod telemetry;
 mod texts;

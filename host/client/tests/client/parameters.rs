@@ -3,7 +3,6 @@
 use crate::support::{Port, client, connected, device, ms, pump_for, refusal};
 use crepitus_client::{Client, Error};
 use crepitus_protocol::host::Refusal;
-use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::parameters::{self, id};
 use crepitus_protocol::{Revision, ValueError, Values};
 
@@ -31,27 +30,6 @@ fn a_set_is_one_commit_and_leaves_the_others_alone() {
         (Revision(2), Revision(2))
     );
     assert_eq!(status.saved, None);
-}
-
-#[test]
-fn a_set_works_while_armed() {
-    let (shared, mut client) = connected();
-    client.zero().unwrap();
-    client.arm().unwrap();
-    for torque in [0.5, 1.0, 2.0, 0.4] {
-        client.set(&[(id::STATIC_TORQUE, torque)]).unwrap();
-        pump_for(&mut client, ms(100));
-    }
-    assert!(client.is_armed());
-    assert_eq!(shared.borrow().drive.revision(), Revision(5));
-    let lines = place("encoder.lines");
-    let error = client.set(&[(lines, 500.0)]).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "encoder.lines = 500 can only change while disarmed: disarm first; nothing was changed"
-    );
-    client.disarm().unwrap();
-    client.set(&[(lines, 500.0)]).unwrap();
 }
 
 #[test]
@@ -110,22 +88,6 @@ fn invalid_values_are_rejected_with_the_valid_ones() {
         client.set(&[(255, 0.0)]).unwrap_err(),
         Error::UnknownParameter { id: 255 }
     );
-}
-
-#[test]
-fn a_commit_from_old_values_is_stale() {
-    let (_, mut client) = connected();
-    let (base, values) = client.parameters().unwrap();
-    client.set(&[(id::STATIC_TORQUE, 0.5)]).unwrap();
-    let error = client.commit(base, &values).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "`commit` is rejected: the parameters have changed since they were read \
-         (now revision 2); read them again"
-    );
-    let revision = Revision(2);
-    assert_eq!(refusal::<()>(Err(error)), Refusal::Stale { revision });
-    assert_eq!(client.commit(revision, &values).unwrap(), Revision(3));
 }
 
 /// A client that is overtaken by another one whenever it commits.
@@ -228,34 +190,6 @@ fn a_set_does_not_undo_what_another_host_has_just_set() {
         client.set(&[(id::STATIC_TORQUE, 0.5)]).unwrap(),
         Revision(3)
     );
-}
-
-#[test]
-fn saved_parameters_survive_a_reboot() {
-    let (shared, mut client) = connected();
-    client.set(&[(id::STATIC_TORQUE, 0.5)]).unwrap();
-    client.save().unwrap();
-    assert_eq!(client.status().unwrap().saved, Some(Revision(2)));
-    client.set(&[(id::STATIC_TORQUE, 0.6)]).unwrap();
-    shared.borrow_mut().start_comms(ResetCause::Power);
-    pump_for(&mut client, ms(20));
-    client.parameters().unwrap_err();
-    client.reconnect(ms(500)).unwrap();
-    let (revision, values) = client.parameters().unwrap();
-    assert_eq!(
-        (revision, values.get(id::STATIC_TORQUE)),
-        (Revision(2), Some(0.5))
-    );
-    assert_eq!(client.status().unwrap().in_force, Revision(2));
-    client.set(&[(id::STATIC_TORQUE, 0.7)]).unwrap();
-}
-
-#[test]
-fn a_flash_write_error_is_reported() {
-    let (shared, mut client) = connected();
-    shared.borrow_mut().flash_works = false;
-    assert_eq!(refusal(client.save()), Refusal::Storage);
-    assert_eq!(client.status().unwrap().saved, None);
 }
 
 #[test]

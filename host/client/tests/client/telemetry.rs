@@ -2,11 +2,10 @@
 
 use crate::support::{Port, check_books, client, connected, device, ms, pump_for, turning};
 use crepitus_client::{Client, Event, Transport, TransportError};
-use crepitus_protocol::counters::{CommsCounter, DriveCounter};
+use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::management::ResetCause;
-use crepitus_protocol::parameters::id;
-use crepitus_protocol::telemetry::{Block, SampleFlags};
-use crepitus_protocol::{Fault, State, TICKS_PER_S};
+use crepitus_protocol::telemetry::Block;
+use crepitus_protocol::{Fault, State};
 
 fn blocks_for(client: &mut Client<Port>, time: std::time::Duration) -> Vec<Block> {
     let end = client.now() + time;
@@ -32,50 +31,6 @@ fn nothing_is_streamed_to_a_client_that_has_ended_its_telemetry() {
     assert!(blocks_for(&mut client, ms(50)).is_empty());
     // The device sends none: it is not the client that drops them.
     assert_eq!(client.tally().unasked_blocks, unasked);
-}
-
-#[test]
-fn ten_seconds_arrive_whole() {
-    let (shared, mut client) = turning(|t| 0.3 * t);
-    client.set(&[(id::RANGE_MOST, 180.0)]).unwrap();
-    client.zero().unwrap();
-    client.arm().unwrap();
-    let first_tick = client.subscribe().unwrap().first_tick;
-    let blocks = blocks_for(&mut client, ms(10_000));
-    client.unsubscribe().unwrap();
-    let end = blocks.last().unwrap().end_tick();
-    let [produced, received, dropped, lost] = check_books(&client);
-    assert!(produced >= 10 * u64::from(TICKS_PER_S) - 40, "{produced}");
-    assert_eq!((received, dropped, lost), (produced, 0, 0));
-    assert_eq!(blocks[0].first_tick, first_tick);
-    assert_eq!(
-        produced,
-        client.accounting().unwrap().next_tick() - first_tick
-    );
-    assert!(end - first_tick >= produced - 40);
-    for pair in blocks.windows(2) {
-        assert_eq!(pair[1].first_tick, pair[0].end_tick());
-        assert_eq!(pair[1].sequence, pair[0].sequence.wrapping_add(1));
-    }
-    // The joint grated all the time: ωn/(2π + 2(λ − atan λ)) = 31.7 Hz at 0.3 rad/s.
-    let samples = || blocks.iter().flat_map(|block| &block.samples);
-    let breaks = samples()
-        .filter(|s| s.flags.has(SampleFlags::BREAK))
-        .count();
-    assert!((315..=319).contains(&breaks), "{breaks}");
-    assert!(
-        samples()
-            .skip(2_000)
-            .all(|s| s.flags.has(SampleFlags::ENERGISED))
-    );
-    let last = samples().next_back().unwrap();
-    assert!((f64::from(last.current_ma) * 1e-3 * 3.345 + f64::from(last.torque_nm)).abs() < 0.3);
-    let counters = client.counters().unwrap();
-    assert_eq!(counters.drive[DriveCounter::Dropped.index()], 0);
-    assert_eq!(counters.comms[CommsCounter::LostSamples.index()], 0);
-    let sent = counters.comms[CommsCounter::SentSamples.index()];
-    assert_eq!(u64::from(sent), received);
-    assert_eq!(shared.borrow().comms.state(), State::Armed);
 }
 
 #[test]

@@ -29,8 +29,6 @@ pub struct Device {
     pub room: usize,
     /// The wire between the controllers.
     pub link_is_cut: bool,
-    /// Whether parameters can be kept.
-    pub flash_works: bool,
     /// Angle of the shaft, rad, after so many seconds.
     pub shaft: fn(f64) -> f64,
     /// Identities as the next start shows them.
@@ -67,7 +65,6 @@ impl Device {
             from_host: Noise::default(),
             room: usize::MAX,
             link_is_cut: false,
-            flash_works: true,
             shaft: |_| 0.0,
             comms_identity: identity(Role::Comms),
             drive_identity: identity(Role::Drive),
@@ -163,10 +160,8 @@ impl Device {
         });
         self.comms_line = outputs.enable;
         if let Some(save) = outputs.save {
-            if self.flash_works {
-                self.saved = Some(save);
-            }
-            self.comms.saved(self.flash_works);
+            self.saved = Some(save);
+            self.comms.saved(true);
         }
         for _ in 0..20 {
             self.tick();

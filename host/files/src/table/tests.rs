@@ -224,35 +224,3 @@ fn what_is_no_table_is_said_with_a_way_out() {
         assert!(error.contains(part), "{error}: {part}");
     }
 }
-
-#[test]
-fn no_bytes_panic() {
-    let parts: [&[u8]; 16] = [
-        b"time",
-        b"knee",
-        b",",
-        b";",
-        b"\t",
-        b"\n",
-        b"\r",
-        b"\"",
-        b"1.5",
-        b"-2,5",
-        b"\xff",
-        b"\xfe",
-        b"\0",
-        b"endheader\n",
-        b"#",
-        b"inDegrees=no\n",
-    ];
-    let mut random = fastrand::Rng::with_seed(1);
-    for _ in 0..4_000 {
-        let mut bytes = Vec::new();
-        for _ in 0..random.u8(..40) {
-            bytes.extend_from_slice(random.choice(parts).unwrap());
-        }
-        if let Err(error) = read(&bytes, &["time", "knee"]) {
-            assert!(!error.is_empty());
-        }
-    }
-}

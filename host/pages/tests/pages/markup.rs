@@ -1,6 +1,29 @@
 //! Checks of markup.
 #![allow(unreachable_pub, dead_code)]
 
+use std::path::Path;
+
+/// Leaves a file in the target's `tmp` directory to be looked at.
+pub fn keep(name: &str, content: &str) {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(path, content).expect("written");
+}
+
+/// Keeps a page and asserts what every page must keep to: it is no longer than that, depends on
+/// nothing outside, has nothing of what is wrong, and fits a phone.
+pub fn assert_page(name: &str, page: &str, longest: usize, wrong: &[&str]) {
+    keep(&format!("{name}.html"), page);
+    assert!(page.len() < longest, "{name}: {} bytes", page.len());
+    for part in ["http", "url(", "<script", "@import"].iter().chain(wrong) {
+        assert!(!page.contains(part), "{name} contains {part}");
+    }
+    assert_balanced(page);
+    assert_fits_a_phone(page);
+    for chart in charts(page) {
+        assert!(assert_labels_inside(&chart) > 3);
+    }
+}
+
 /// Every element that opens closes, in order.
 pub fn assert_balanced(page: &str) {
     let mut open = Vec::new();

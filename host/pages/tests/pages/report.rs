@@ -7,12 +7,9 @@ mod coupled;
 mod recorded;
 
 use std::cell::RefCell;
-use std::path::Path;
 
 use crate::fixture::{KINETIC, Motion, Run, STATIC};
-use crate::markup::{
-    assert_balanced, assert_fits_a_phone, assert_labels_inside, charts, count, on_a_desk,
-};
+use crate::markup::{assert_page, count, on_a_desk};
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_pages::report::{Collector, Figures, Section, Setup, Text, TorqueLevels, html};
 use crepitus_scene::trace::Column;
@@ -26,13 +23,7 @@ const SINE: Motion = Motion::Sine {
 /// A run of this motion, with as many rows as it announces.
 fn collect(motion: Motion, rows: u32, step: f64, encoder: bool) -> Figures {
     let columns = Run::columns(true, encoder);
-    let collector = RefCell::new(Collector::new(&Setup {
-        columns: &columns,
-        rows_expected: u64::from(rows),
-        row_step_s: step,
-        levels: Some(TorqueLevels::elastic(KINETIC, STATIC)),
-        effects: EffectSettings::default(),
-    }));
+    let collector = RefCell::new(Collector::new(&setup(&columns, rows, step)));
     let run = Run::new(motion, f64::from(rows - 1) * step, step);
     let run = if encoder { run.with_encoder() } else { run };
     run.play(
@@ -101,17 +92,7 @@ fn text(title: &str) -> Text {
 /// looked at.
 fn page(name: &str, text: &Text, figures: &Figures) -> String {
     let page = html(text, figures);
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.html"));
-    std::fs::write(path, &page).expect("written");
-    assert!(page.len() < 500_000, "{name}: {} bytes", page.len());
-    for forbidden in ["http", "url(", "<script", "@import", "NaN", "inf,"] {
-        assert!(!page.contains(forbidden), "{name} contains {forbidden}");
-    }
-    assert_balanced(&page);
-    assert_fits_a_phone(&page);
-    for chart in charts(&page) {
-        assert!(assert_labels_inside(&chart) > 3);
-    }
+    assert_page(name, &page, 500_000, &["NaN", "inf,"]);
     on_a_desk(&page)
 }
 

@@ -2,12 +2,8 @@
 //!
 //! The pages are left in the target's `tmp` directory to be looked at.
 
-use std::path::Path;
-
 use crate::fixture::symptom::{EXAMINED, Item, STEPPED, ran, scene};
-use crate::markup::{
-    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, charts, count,
-};
+use crate::markup::{assert_drawn, assert_page, count};
 use crepitus_model::render::effects::EffectSettings;
 use crepitus_pages::report::{Collector, Figures, Paper, Setup, Text, html, pictures};
 use crepitus_scene::Scene;
@@ -46,17 +42,8 @@ fn page(name: &str, figures: &Figures) -> String {
         ..Text::default()
     };
     let page = html(&text, figures);
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("symptom-{name}.html"));
-    std::fs::write(path, &page).expect("written");
-    assert!(page.len() < 300_000, "{name}: {} bytes", page.len());
-    for forbidden in ["http", "url(", "<script", "@import", "NaN", "inf,"] {
-        assert!(!page.contains(forbidden), "{name} contains {forbidden}");
-    }
-    assert_balanced(&page);
-    assert_fits_a_phone(&page);
-    for chart in charts(&page) {
-        assert!(assert_labels_inside(&chart) > 3);
-    }
+    let wrong = ["NaN", "inf,"];
+    assert_page(&format!("symptom-{name}"), &page, 300_000, &wrong);
     for picture in pictures(figures, Paper::Screen) {
         assert_drawn(&picture.svg);
     }

@@ -4,7 +4,7 @@ use crate::support::{
     check_books, metadata, open, plain, record, recorded, rows, rows_of, sent, sent_of,
 };
 use crepitus_pages::recorded::Analysis;
-use crepitus_recording::{Cause, ReadError, RecordError, Recorder, Totals};
+use crepitus_recording::{Cause, ReadError, Recorder, Totals};
 use std::fs;
 
 #[test]
@@ -135,18 +135,6 @@ fn one_that_grows_is_read_as_it_was_when_it_was_opened() {
         warning.contains("perhaps its program still runs"),
         "{warning}"
     );
-}
-
-#[test]
-fn nothing_is_written_over() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.json");
-    fs::write(&path, "a person's own").unwrap();
-    assert!(matches!(
-        Recorder::create(&path, &metadata("another")),
-        Err(RecordError::Exists(_))
-    ));
-    assert_eq!(fs::read(&path).unwrap(), b"a person's own");
 }
 
 #[test]

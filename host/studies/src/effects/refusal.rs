@@ -66,22 +66,3 @@ pub fn refusal(scene: &Scene) -> Option<Refusal> {
         None
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::study::tests::scene;
-    use super::*;
-
-    #[test]
-    fn scenes_without_hand_step_or_end_are_refused_with_their_key() {
-        let mut long = scene(&["crepitus"], 1.0);
-        assert_eq!(refusal(&long), None);
-        long.duration_s = 2500.0;
-        let refused = refusal(&long).unwrap();
-        assert_eq!(refused, Refusal::TooLong { ticks: 50_000_000 });
-        assert!(refused.to_string().contains("50000000 ticks"));
-        assert_eq!(refused.key(), "duration_s");
-        long.solver = SolverChoice::Reference;
-        assert_eq!(refusal(&long), Some(Refusal::Reference));
-    }
-}

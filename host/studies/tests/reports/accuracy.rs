@@ -5,12 +5,8 @@
 // Small whole numbers.
 #![allow(clippy::cast_precision_loss)]
 
-use std::path::Path;
-
-use crate::markup::{
-    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, assert_printable,
-    charts, count,
-};
+use crate::evil_text;
+use crate::markup::{assert_drawn, assert_page, assert_printable, count, keep};
 use crate::study;
 use crepitus_studies::accuracy::actuator::ActuatorPoint;
 use crepitus_studies::accuracy::report::{html, pictures};
@@ -57,17 +53,8 @@ fn of_points(points: &[Point]) -> Study {
 
 fn whole_page(name: &str, study: &Study, text: &StudyText) -> String {
     let page = html(study, text);
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("accuracy-{name}.html"));
-    std::fs::write(path, &page).expect("written");
-    assert!(page.len() < 3_000_000, "{name}: {} bytes", page.len());
-    for forbidden in ["http", "url(", "<script", "@import", "NaN", "inf,", "inf "] {
-        assert!(!page.contains(forbidden), "{name} contains {forbidden}");
-    }
-    assert_balanced(&page);
-    assert_fits_a_phone(&page);
-    for chart in charts(&page) {
-        assert!(assert_labels_inside(&chart) > 3);
-    }
+    let wrong = ["NaN", "inf,", "inf "];
+    assert_page(&format!("accuracy-{name}"), &page, 3_000_000, &wrong);
     page
 }
 
@@ -334,21 +321,11 @@ fn no_points_and_odd_points() {
 
 #[test]
 fn words_are_escaped() {
-    let evil = "<script>alert('&')</script>";
-    let mut points = study::pair(evil, "frozen");
+    let text = evil_text();
+    let mut points = study::pair("<script>alert('&')</script>", "frozen");
     for point in &mut points {
         point.solver = "<script>&\"";
     }
-    let text = StudyText {
-        title: evil.to_owned(),
-        intro: evil.to_owned(),
-        notes: vec![evil.to_owned()],
-        tables: vec![Section {
-            title: evil.to_owned(),
-            rows: vec![(evil.to_owned(), evil.to_owned())],
-        }],
-        footer: evil.to_owned(),
-    };
     let page = page("escaped", &points, &text);
     assert!(count(&page, "&lt;script&gt;") > 8);
 }
@@ -371,8 +348,7 @@ fn pictures_are_documents_with_their_legend() {
         .iter()
         .find(|p| p.name == "event-time-constant-0-988-physical-f64")
         .expect("a name");
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("accuracy.svg");
-    std::fs::write(path, &picture.svg).expect("written");
+    keep("accuracy.svg", &picture.svg);
     assert_drawn(&picture.svg);
     assert!(picture.svg.contains("xmlns=\"http://www.w3.org/2000/svg\""));
     assert!(picture.svg.contains("device's tick"));

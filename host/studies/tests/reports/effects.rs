@@ -3,12 +3,8 @@
 //!
 //! The pages are left in the target's `tmp` directory to be looked at.
 
-use std::path::Path;
-
-use crate::markup::{
-    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, assert_printable,
-    charts, count, on_a_desk,
-};
+use crate::evil_text;
+use crate::markup::{assert_drawn, assert_page, assert_printable, count, on_a_desk};
 use crepitus_scene::run::AddedTime;
 use crepitus_studies::effects::answer::{Dropped, Subset};
 use crepitus_studies::effects::influence::{Difference, Torque};
@@ -159,17 +155,8 @@ fn text() -> StudyText {
 
 fn page(name: &str, study: &EffectsStudy, text: &StudyText) -> String {
     let page = html(study, text);
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("effects-{name}.html"));
-    std::fs::write(path, &page).expect("written");
-    assert!(page.len() < 3_000_000, "{name}: {} bytes", page.len());
-    for forbidden in ["http", "url(", "<script", "@import", "NaN", "inf "] {
-        assert!(!page.contains(forbidden), "{name} contains {forbidden}");
-    }
-    assert_balanced(&page);
-    assert_fits_a_phone(&page);
-    for chart in charts(&page) {
-        assert!(assert_labels_inside(&chart) > 3);
-    }
+    let wrong = ["NaN", "inf "];
+    assert_page(&format!("effects-{name}"), &page, 3_000_000, &wrong);
     on_a_desk(&page)
 }
 
@@ -263,20 +250,12 @@ fn without_a_spectrum_there_are_no_bands() {
 
 #[test]
 fn words_are_escaped() {
-    let evil = "<script>alert('&')</script>".to_owned();
-    let text = StudyText {
-        title: evil.clone(),
-        intro: evil.clone(),
-        notes: vec![evil.clone()],
-        tables: vec![Section {
-            title: evil.clone(),
-            rows: vec![(evil.clone(), evil.clone())],
-        }],
-        footer: evil.clone(),
-    };
+    let text = evil_text();
     let mut study = study();
-    study.warnings.push(evil.clone());
-    study.rows[6].outcome = Outcome::Failed { failure: evil };
+    study.warnings.push(text.title.clone());
+    study.rows[6].outcome = Outcome::Failed {
+        failure: text.title.clone(),
+    };
     let page = page("escaped", &study, &text);
     assert!(count(&page, "&lt;script&gt;") >= 8);
 }

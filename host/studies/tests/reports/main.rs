@@ -11,3 +11,20 @@ mod matrix;
 mod stability;
 #[path = "fixture/study.rs"]
 mod study;
+
+use crepitus_studies::{Section, StudyText};
+
+/// Markup in every text of a page.
+fn evil_text() -> StudyText {
+    let evil = || "<script>alert('&')</script>".to_owned();
+    StudyText {
+        title: evil(),
+        intro: evil(),
+        notes: vec![evil()],
+        tables: vec![Section {
+            title: evil(),
+            rows: vec![(evil(), evil())],
+        }],
+        footer: evil(),
+    }
+}

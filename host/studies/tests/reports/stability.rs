@@ -3,11 +3,9 @@
 //!
 //! The pages are left in the target's `tmp` directory to be looked at.
 
-use std::path::Path;
-
+use crate::evil_text;
 use crate::markup::{
-    assert_balanced, assert_drawn, assert_fits_a_phone, assert_labels_inside, assert_printable,
-    charts, count, on_a_desk,
+    assert_balanced, assert_drawn, assert_page, assert_printable, count, keep, on_a_desk,
 };
 use crate::matrix;
 use crepitus_model::Convention;
@@ -31,23 +29,9 @@ fn text(title: &str) -> StudyText {
     }
 }
 
-fn keep(name: &str, content: &str) {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("stability-{name}"));
-    std::fs::write(path, content).expect("written");
-}
-
 fn page(name: &str, matrix: &Matrix, stories: Option<&told::Stories>, text: &StudyText) -> String {
     let page = html(matrix, stories, text);
-    keep(&format!("{name}.html"), &page);
-    assert!(page.len() < 3_000_000, "{name}: {} bytes", page.len());
-    for forbidden in ["http", "url(", "<script", "@import"] {
-        assert!(!page.contains(forbidden), "{name} contains {forbidden}");
-    }
-    assert_balanced(&page);
-    assert_fits_a_phone(&page);
-    for chart in charts(&page) {
-        assert!(assert_labels_inside(&chart) > 3);
-    }
+    assert_page(&format!("stability-{name}"), &page, 3_000_000, &[]);
     on_a_desk(&page)
 }
 
@@ -160,13 +144,7 @@ fn words_are_escaped() {
         at_s: None,
         flagged: false,
     };
-    let text = StudyText {
-        title: evil.to_owned(),
-        intro: evil.to_owned(),
-        footer: evil.to_owned(),
-        ..StudyText::default()
-    };
-    let page = page("escaped", &matrix, None, &text);
+    let page = page("escaped", &matrix, None, &evil_text());
     assert!(count(&page, "&lt;script&gt;") > 20);
     let printed = pictures(&matrix, None, Paper::Print(Column::One)).remove(0);
     assert_printable(&printed);
@@ -184,7 +162,7 @@ fn pictures_are_documents() {
     let names: Vec<&str> = pictures.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names[..3], ["matrix", "three-solvers", "implicit-euler"]);
     for picture in &pictures {
-        keep(&format!("{}.svg", picture.name), &picture.svg);
+        keep(&format!("stability-{}.svg", picture.name), &picture.svg);
         assert_drawn(&picture.svg);
         assert!(picture.svg.contains("xmlns=\"http://www.w3.org/2000/svg\""));
         assert!(

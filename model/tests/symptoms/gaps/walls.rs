@@ -7,13 +7,10 @@ use crepitus_model::render::effects::range_limit::RangeLimitSettings;
 
 #[test]
 fn a_wall_that_leaves_and_is_committed_again_does_not_push() {
-    let wall = EffectSettings {
-        range_limit: Some(RangeLimitSettings {
-            flexion_limit_deg: 60.0,
-            ..RangeLimitSettings::default()
-        }),
-        ..EffectSettings::default()
-    };
+    let wall = on!(range_limit: RangeLimitSettings {
+        flexion_limit_deg: 60.0,
+        ..RangeLimitSettings::default()
+    });
     let mut rig = only::<f64>(wall, 59.9);
     let rest = moved(&mut rig, 59.9_f64.to_radians(), 800);
     let full_nm = rig.step(rest, rest, 0.0);
@@ -35,15 +32,12 @@ fn a_wall_that_leaves_and_is_committed_again_does_not_push() {
 
 /// Ends as firm as given, with the leg where both push it, against each other.
 fn between_two_walls(extension_loss: f64) -> (Rig<f64>, EffectSettings, f64) {
-    let walls = |extension_limit_deg, flexion_limit_deg| EffectSettings {
-        range_limit: Some(RangeLimitSettings {
-            extension_limit_deg,
-            flexion_limit_deg,
-            extension_loss,
-            ..RangeLimitSettings::default()
-        }),
-        ..EffectSettings::default()
-    };
+    let walls = |extension_limit_deg, flexion_limit_deg| on!(range_limit: RangeLimitSettings {
+        extension_limit_deg,
+        flexion_limit_deg,
+        extension_loss,
+        ..RangeLimitSettings::default()
+    });
     let mut rig = only::<f64>(walls(10.0, 60.0), 59.9);
     let (mut at_rad, _) = moved(&mut rig, 59.9_f64.to_radians(), 800);
     rig.commit(walls(70.0, 120.0));
@@ -85,10 +79,7 @@ fn two_walls_that_leave_and_are_committed_again_do_not_push() {
 #[test]
 fn either_end_lets_go_of_its_torque_while_samples_are_missing() {
     for (from_deg, rad_s) in [(119.9_f64, 1.0), (10.1, -1.0)] {
-        let wall = EffectSettings {
-            range_limit: Some(RangeLimitSettings::default()),
-            ..EffectSettings::default()
-        };
+        let wall = on!(range_limit: RangeLimitSettings::default());
         let mut rig = only::<f64>(wall, from_deg);
         let (mut at_rad, mut pressed_nm) = (from_deg.to_radians(), 0.0);
         for _ in 0..400 {
@@ -119,14 +110,11 @@ fn a_wall_that_a_commit_softens_gives_the_other_no_push() {
 /// the leg has left it, the new cap holds at once.
 #[test]
 fn a_wall_that_was_left_comes_back_with_its_new_cap() {
-    let wall = |flexion_torque_nm| EffectSettings {
-        range_limit: Some(RangeLimitSettings {
-            flexion_limit_deg: 60.0,
-            flexion_torque_nm,
-            ..RangeLimitSettings::default()
-        }),
-        ..EffectSettings::default()
-    };
+    let wall = |flexion_torque_nm| on!(range_limit: RangeLimitSettings {
+        flexion_limit_deg: 60.0,
+        flexion_torque_nm,
+        ..RangeLimitSettings::default()
+    });
     let mut rig = only::<f64>(wall(4.0), 59.9);
     let mut at_rad = moved(&mut rig, 59.9_f64.to_radians(), 2_000).0;
     let mut go = |rig: &mut Rig<f64>, omega_rad_s: f64| {

@@ -76,23 +76,3 @@ fn times_that_do_not_go_forward() {
         "a.csv, line 4, column \"time\": 1700000000000 is no time in seconds",
     );
 }
-
-#[test]
-fn rows_of_the_wrong_width() {
-    assert_refused(
-        read_csv(CSV.replace("1.3,-30\n", "1.3")),
-        "a.csv, line 5: the file ends inside this row, with 1 of 2 cells",
-    );
-    assert_refused(
-        read_csv(CSV.replace("1.1,60", "1.1")),
-        "a.csv, line 3: the row has 1 cells, the names are 2",
-    );
-    assert_refused(
-        read_csv(CSV.replace("1.1,60", "1,1,6,0")),
-        "a.csv, line 3: the row has 4 cells, the names are 2",
-    );
-    assert_refused(
-        read_mot(&MOT.replace("5\t-30\n", "5")),
-        "a.mot, line 13: the file ends inside this row, with 2 of 3 cells",
-    );
-}

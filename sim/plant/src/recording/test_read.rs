@@ -79,22 +79,6 @@ fn assert_good(result: Result<Samples, String>) {
 }
 
 #[test]
-fn csv_is_read_in_the_forms_programs_write() {
-    assert_good(read_csv(CSV));
-    assert_good(read_csv(CSV.trim_end()));
-    assert_good(read_csv(CSV.replace('\n', "\r\n")));
-    assert_good(read_csv(CSV.replace(',', " ,  ")));
-    assert_good(read_csv(format!("\u{feff}{CSV}")));
-    assert_good(read_csv(format!("\n{}\n \r\n", CSV.replace('\n', "\n\n"))));
-    assert_good(read_csv(
-        CSV.replace("time,", "\"time\",").replace("120", "\"120\""),
-    ));
-    assert_good(read_csv(
-        "hip,knee,time\n9,0,1\n9,60,1.1\n9,120,1.2\nx,-30,1.3",
-    ));
-}
-
-#[test]
 fn opensim_is_read_in_the_forms_programs_write() {
     assert_good(read_mot(MOT));
     assert_good(read_mot(MOT.trim_end()));

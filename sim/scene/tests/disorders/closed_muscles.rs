@@ -2,12 +2,8 @@
 
 use crate::any_symptom::motions;
 use crate::support::{
-    Given, TIME_S, TORQUE_NM, constant, events, given, jumps, knots, near, symptom, times,
-    torque_at, words, work_j,
+    Given, TIME_S, TORQUE_NM, constant, events, given, jumps, near, symptom, torque_at, words,
 };
-use crepitus_plant::Motion;
-use crepitus_scene::reference::symptoms::Word as Kind;
-use std::f64::consts::{PI, TAU};
 
 /// MAS 2.
 fn mas(lambda: f64, b: f64, r: f64, k: f64) -> Given {
@@ -72,78 +68,6 @@ fn a_catch_decays_to_its_residual() {
 
 fn reflex(numbers: &[(&str, f64)]) -> Given {
     given(numbers, &[("form", "reflex")])
-}
-
-#[test]
-fn a_reflex_lags_a_ramp_by_its_delay_and_its_activation() {
-    let keys = reflex(&[("velocity_shift_s", 0.1)]);
-    let motion = constant(20.0, 40.0);
-    let found = events("spasticity", &keys, &motion, 3.0);
-    assert_eq!(words(&found), ["onset"]);
-    near(found[0].angle_rad.to_degrees(), 71.0, 1e-9);
-    let at = |t: f64| 2.43 * (20.0 + 40.0 * t - 75.0 + 40.0 * (0.1 - 0.06)).to_radians();
-    for time_s in [2.0, 2.7] {
-        let torque = torque_at("spasticity", &keys, &motion, time_s);
-        near(torque, at(time_s), TORQUE_NM);
-    }
-    // The transient of the reflex, from τd after the onset on.
-    let onset_s = found[0].time_s;
-    near(
-        torque_at("spasticity", &keys, &motion, onset_s + 0.05),
-        0.0,
-        1e-12,
-    );
-    let t = 0.013;
-    let rate = 2.43 * 40.0_f64.to_radians();
-    let y = rate * (t - 0.01 + 0.01 * (-t / 0.01_f64).exp());
-    near(
-        torque_at("spasticity", &keys, &motion, onset_s + 0.05 + t),
-        y,
-        TORQUE_NM,
-    );
-}
-
-#[test]
-fn a_reflex_on_a_sine_has_its_gain_and_phase() {
-    let (mu, delay, activation, k) = (0.25, 0.05, 0.01, 1.7);
-    let keys = reflex(&[
-        ("threshold_deg", -150.0),
-        ("velocity_shift_s", mu),
-        ("delay_s", delay),
-        ("activation_s", activation),
-        ("gain_nm_per_rad", k),
-        ("torque_nm", 20.0),
-    ]);
-    let (amplitude, f) = (0.3, 1.3);
-    let motion = Motion::sine(amplitude, f, 40.0);
-    let w = TAU * f;
-    let gain = k * (1.0 + (mu * w).powi(2)).sqrt() / (1.0 + (activation * w).powi(2)).sqrt();
-    let phase = (mu * w).atan() - w * delay - (activation * w).atan() + 40.0_f64.to_radians();
-    assert_eq!(words(&events("spasticity", &keys, &motion, 3.0)), ["onset"]);
-    for time_s in [0.9, 1.23, 2.9] {
-        let y = k * 150.0_f64.to_radians() + gain * amplitude * (w * time_s + phase).sin();
-        near(torque_at("spasticity", &keys, &motion, time_s), y, 1e-12);
-    }
-    // The reflex gives energy above 3.73 Hz.
-    for (f, gives) in [(3.70, false), (3.76, true)] {
-        let w = TAU * f;
-        let lead: f64 = (mu * w).atan() - w * delay - (activation * w).atan();
-        assert_eq!(lead < 0.0, gives);
-        let motion = Motion::sine(0.05, f, 0.0);
-        let keys = reflex(&[
-            ("threshold_deg", -150.0),
-            ("velocity_shift_s", mu),
-            ("gain_nm_per_rad", k),
-            ("torque_nm", 20.0),
-        ]);
-        let work = work_j(
-            "spasticity",
-            &keys,
-            &motion,
-            &[10.0 / f, 10.5 / f, 11.0 / f],
-        );
-        assert_eq!(work < 0.0, gives, "{f} Hz: {work} J");
-    }
 }
 
 /// y = ∫u(t − τ_d − x)·e^(−x/τ_a)/τ_a dx, by Gauss's rule with four points on
@@ -217,57 +141,10 @@ fn a_reflex_reaches_and_leaves_its_cap_at_known_angles() {
 }
 
 #[test]
-fn clasp_knife_builds_and_falls() {
-    let keys = given(&[], &[]);
-    let motion = constant(10.0, 60.0);
-    let found = events("clasp-knife", &keys, &motion, 1.5);
-    assert_eq!(words(&found), ["onset", "flow", "release"]);
-    let release = &found[2];
-    near(release.angle_rad.to_degrees(), 75.0, 1e-9);
-    near(release.torque_before_nm, 0.8 + 3.0 * PI / 4.0, TORQUE_NM);
-    near(release.torque_before_nm, 3.156, 5e-4);
-    let later = torque_at("clasp-knife", &keys, &motion, release.time_s + 0.085);
-    let left = 0.15 + 0.85 * (-0.085_f64 / 0.03).exp();
-    near(later / release.torque_before_nm, left, 1e-12);
-    near(left, 0.2, 1e-3);
-}
-
-#[test]
 fn clasp_knife_is_released_by_torque_too() {
     let keys = given(&[], &[("trigger", "torque")]);
     let found = events("clasp-knife", &keys, &constant(10.0, 60.0), 1.5);
     assert_eq!(words(&found), ["onset", "flow", "release"]);
     near(found[2].torque_before_nm, 2.5, TORQUE_NM);
     near(found[2].angle_rad, 30.0_f64.to_radians() + 1.7 / 3.0, 1e-12);
-}
-
-#[test]
-fn clonus_beats_at_its_intervals() {
-    let motion = knots(20.0, &[(0.0, 200.0), (0.4, 200.0), (0.5, 0.0)]);
-    let keys = given(&[], &[]);
-    let found = events("clonus", &keys, &motion, 2.0);
-    let beats = times(&found, Kind::Beat);
-    near(found[0].time_s, 0.2, TIME_S);
-    near(beats[0], 0.25, TIME_S);
-    let table = [216.7, 191.7, 179.2, 172.9, 169.8];
-    for (n, (pair, expected)) in (0_i32..).zip(beats.windows(2).zip(table)) {
-        let interval = pair[1] - pair[0];
-        near(1e3 * interval, expected, 0.05);
-        near(interval, (1.0 + 0.3 * 0.5_f64.powi(n)) / 6.0, 1e-12);
-        // Height and end of the beat, and 2·A·D·P/π of impulse.
-        let peak_s = pair[0] + 0.225 * interval;
-        near(torque_at("clonus", &keys, &motion, peak_s), 1.5, TORQUE_NM);
-        let end_s = pair[0] + 0.4501 * interval;
-        near(torque_at("clonus", &keys, &motion, end_s), 0.0, 0.0);
-    }
-    let interval = beats[1] - beats[0];
-    let mut clonus = symptom("clonus", &keys, &motion);
-    let step_s = 0.45 * interval / 400.0;
-    let impulse: f64 = (0..400)
-        .map(|i| {
-            clonus.advance(beats[0] + step_s * (f64::from(i) + 0.5));
-            step_s * clonus.torque_nm()
-        })
-        .sum();
-    near(impulse, 2.0 * 1.5 * 0.45 * interval / PI, 1e-6);
 }

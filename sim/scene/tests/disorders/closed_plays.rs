@@ -1,7 +1,7 @@
 //! Properties of walls, rigidity and texture that are known in closed form.
 
 use crate::support::{
-    TIME_S, TORQUE_NM, constant, events, given, jumps, near, times, torque_at, words, work_j,
+    TIME_S, TORQUE_NM, constant, events, given, jumps, near, times, words, work_j,
 };
 use crepitus_scene::reference::symptoms::Word as Kind;
 
@@ -90,91 +90,6 @@ fn end_feels_return_no_more_than_their_cap_allows() {
         let returned = -work_j("range-limit", &keys, &motion, &[0.3, found[3].time_s]);
         near(1e3 * returned, most_mj, 0.6);
     }
-}
-
-#[test]
-fn lead_pipe_loses_four_tc_a_minus_delta_a_cycle() {
-    let keys = given(&[("torque_nm", 1.2), ("presliding_deg", 1.5)], &[]);
-    let motion = jumps(
-        45.0,
-        &[
-            (0.0, 60.0, 60.0),
-            (0.5, 60.0, -60.0),
-            (1.5, -60.0, 60.0),
-            (2.5, 60.0, -60.0),
-        ],
-    );
-    let found = events("lead-pipe", &keys, &motion, 2.5);
-    assert_eq!(
-        words(&found),
-        ["flow", "turn", "flow", "turn", "flow", "turn"]
-    );
-    // A reversal takes 2δ.
-    near(found[2].time_s - found[1].time_s, 3.0 / 60.0, TIME_S);
-    let loop_j = work_j(
-        "lead-pipe",
-        &keys,
-        &motion,
-        &[0.5, found[2].time_s, 1.5, found[4].time_s, 2.5],
-    );
-    let (a, delta) = (30.0_f64.to_radians(), 1.5_f64.to_radians());
-    near(loop_j, 4.0 * 1.2 * (a - delta), 1e-8);
-    near(loop_j, 2.3876, 1e-4);
-}
-
-#[test]
-fn lead_pipe_does_not_depend_on_speed() {
-    let keys = given(&[("elastic_nm_per_rad", 2.0), ("neutral_deg", 30.0)], &[]);
-    for speed in [0.5, 60.0, 350.0] {
-        let motion = constant(45.0, speed);
-        for turned_deg in [0.4_f64, 1.2, 20.0] {
-            let play = (1.2 * turned_deg / 1.5).min(1.2);
-            let spring = 2.0 * (15.0 + turned_deg).to_radians();
-            let torque = torque_at("lead-pipe", &keys, &motion, turned_deg / speed);
-            near(torque, play + spring, TORQUE_NM);
-        }
-    }
-}
-
-/// The mean and the highest torque of cogwheel over whole cycles at a speed.
-fn cogwheel_at(speed: f64) -> (f64, f64) {
-    let keys = given(&[], &[]);
-    let motion = constant(0.0, speed);
-    let (from, cycles) = (10, 4);
-    let mut marks: Vec<_> = (0..2 * cycles)
-        .map(|half| f64::from(from) * 0.16 + 0.08 * f64::from(half))
-        .chain([f64::from(from + cycles) * 0.16])
-        .collect();
-    let found = events("cogwheel", &keys, &motion, 3.0);
-    let within = marks[0]..marks[marks.len() - 1];
-    marks.extend(
-        times(&found, Kind::Flow)
-            .into_iter()
-            .filter(|t| within.contains(t)),
-    );
-    marks.sort_by(f64::total_cmp);
-    marks.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
-    let span = marks[marks.len() - 1] - marks[0];
-    let mean = work_j("cogwheel", &keys, &motion, &marks) / (speed.to_radians() * span);
-    let peak = found.iter().map(|e| e.torque_before_nm).fold(0.0, f64::max);
-    (mean, peak)
-}
-
-#[test]
-fn cogwheel_has_its_mean_and_its_height() {
-    let (mean, peak) = cogwheel_at(60.0);
-    near(mean, 1.34375, 1e-9);
-    near(peak, 2.0, TORQUE_NM);
-    // (1 − ρ)δf/D = 11.25 deg/s is what the full height takes.
-    near(cogwheel_at(11.26).1, 2.0, TORQUE_NM);
-    assert!(cogwheel_at(11.24).1 < 2.0 - 1e-4);
-    let found = events("cogwheel", &given(&[], &[]), &constant(0.0, 5.0), 3.0);
-    let peak = found[2..]
-        .iter()
-        .map(|e| e.torque_before_nm)
-        .fold(0.0, f64::max);
-    near(peak, 0.8 + 2.0 / 1.5 * 5.0 * 0.08, TORQUE_NM);
-    near(peak, 1.3333, 1e-4);
 }
 
 #[test]

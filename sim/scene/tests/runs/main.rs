@@ -308,21 +308,6 @@ fn a_velocity_jump_between_steps_tears_a_physical_stick_loose() {
 }
 
 #[test]
-fn an_absent_effect_leaves_no_trace() {
-    let bare = scene(0.1, ONE_RAD_S, EXACT_EVENTS, "");
-    let (keep, summary) = simulate(&bare);
-    assert_eq!(keep.rows[0].len(), 3);
-    assert!(keep.events.is_empty() && summary.torque.is_none() && summary.effects.is_empty());
-
-    // With and without the encoder, what both have of the motion is the same.
-    let with = simulate(&scene(0.1, ONE_RAD_S, EXACT_EVENTS, "[effects.encoder]")).0;
-    assert_eq!(with.rows[0].len(), 6);
-    for (a, b) in keep.rows.iter().zip(&with.rows) {
-        assert_eq!(a[..], b[..3]);
-    }
-}
-
-#[test]
 fn an_encoder_changes_the_cycle_rate_by_less_than_a_percent() {
     for omega in [0.3, 1.0, 2.0] {
         let motion = format!("kind = \"constant\"\nvelocity_rad_s = {omega}");

@@ -8,7 +8,6 @@ use std::time::Instant;
 
 const OHM: f64 = 1.23;
 const TAU_S: f64 = 0.34e-3 / OHM;
-const SUPPLY_V: f64 = 24.0;
 /// Kt·N with the defaults, N·m/A.
 const CONSTANT: f64 = 0.0389 * 86.0;
 /// Legs of all kinds.
@@ -70,29 +69,6 @@ fn it_can_live_in_a_thread() {
 }
 
 #[test]
-fn the_current_of_a_locked_rotor_rises_exponentially() {
-    for volt in [3.0, -17.0, 60.0] {
-        let mut leg = turning(0.0);
-        leg.set_terminals(Terminals::Driven(volt));
-        let final_a = volt.clamp(-SUPPLY_V, SUPPLY_V) / OHM;
-        for n in 0..100_u32 {
-            let start_s = f64::from(n) * TICK_S;
-            leg.first_half();
-            let known = after(0.0, final_a, start_s + TICK_S / 2.0);
-            assert!((leg.winding_current_a() - known).abs() < 1e-13);
-            leg.second_half();
-            let known = after(0.0, final_a, start_s + TICK_S);
-            assert!((leg.winding_current_a() - known).abs() < 1e-13);
-        }
-        // The hand holds against the motor.
-        ticks(&mut leg, 100);
-        assert!((leg.motor_nm() + CONSTANT * final_a).abs() < 1e-11);
-        assert!((leg.felt_nm() - leg.motor_nm()).abs() < 1e-10);
-        is_balanced(&leg);
-    }
-}
-
-#[test]
 fn a_voltage_begins_when_it_is_set() {
     let mut leg = turning(0.0);
     leg.set_terminals(Terminals::Driven(5.0));
@@ -102,46 +78,6 @@ fn a_voltage_begins_when_it_is_set() {
     leg.second_half();
     let known = after(half_a, -8.0 / OHM, TICK_S / 2.0);
     assert!((leg.winding_current_a() - known).abs() < 1e-14);
-}
-
-/// An emergency off in the middle of a tick: the current is gone in it, and
-/// with it all torque but that of the mechanics.
-#[test]
-fn an_open_bridge_coasts() {
-    let mut leg = turning(2.0);
-    leg.set_terminals(Terminals::Driven(5.0));
-    ticks(&mut leg, 200);
-    leg.first_half();
-    let from_a = leg.winding_current_a();
-    let mean_nm = leg.motor_nm();
-    leg.set_terminals(Terminals::Open);
-    leg.second_half();
-    let final_a = (SUPPLY_V + 2.0 * DIODE_V - CONSTANT * 2.0) / OHM;
-    let dies_s = TAU_S * (1.0 - from_a / final_a).ln();
-    assert!(from_a < 0.0 && dies_s < TICK_S / 2.0);
-    assert_eq!(leg.winding_current_a(), 0.0);
-    let charge_c = final_a * dies_s + TAU_S * from_a;
-    let known_nm = 0.5 * mean_nm - CONSTANT * charge_c / TICK_S;
-    assert!((leg.motor_nm() - known_nm).abs() < 1e-8);
-    for _ in 0..100 {
-        ticks(&mut leg, 1);
-        assert_eq!(
-            (leg.winding_current_a(), leg.motor_nm(), leg.felt_nm()),
-            (0.0, 0.0, 0.0)
-        );
-    }
-    is_balanced(&leg);
-}
-
-#[test]
-fn shorted_terminals_brake() {
-    let mut leg = turning(1.5);
-    leg.set_terminals(Terminals::Driven(0.0));
-    ticks(&mut leg, 200);
-    let brake = leg.felt_nm() / 1.5;
-    assert!((brake - CONSTANT * CONSTANT / OHM).abs() < 1e-9);
-    assert!((brake - 9.0).abs() < 0.15);
-    is_balanced(&leg);
 }
 
 /// One diode is all that a current of one sense meets.
@@ -171,19 +107,6 @@ fn a_shorted_switch_brakes_one_way_until_the_stop_is_pressed() {
         leg.set_shorted_switch(None);
         ticks(&mut leg, 400);
         assert_eq!(leg.winding_current_a(), 0.0);
-    }
-}
-
-#[test]
-fn a_motor_faster_than_its_supply_generates() {
-    for omega in [8.5_f64, -9.0, 7.6, -7.6] {
-        let mut leg = turning(omega);
-        ticks(&mut leg, 200);
-        let beyond_v = (CONSTANT * omega.abs() - SUPPLY_V - 2.0 * DIODE_V).max(0.0);
-        let known = -omega.signum() * beyond_v / OHM;
-        assert!((leg.winding_current_a() - known).abs() < 1e-12);
-        assert!((leg.felt_nm() + CONSTANT * known).abs() < 1e-10);
-        is_balanced(&leg);
     }
 }
 

@@ -12,7 +12,6 @@ mod reboot;
 mod replay;
 mod requests;
 mod two_hosts;
-mod wraps;
 
 use crepitus_virtual_device::Start;
 use support::{Host, examination};

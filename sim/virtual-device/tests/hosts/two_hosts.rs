@@ -6,7 +6,7 @@ use crate::{connected, streaming};
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::frame::encode_bytes;
 use crepitus_protocol::host::{Answer, Operation, Refusal};
-use crepitus_protocol::management::{self, Action, ManagementRequest, ResetCause};
+use crepitus_protocol::management::{Action, ManagementRequest, ResetCause};
 use crepitus_protocol::{Lane, Session, State};
 use crepitus_virtual_device::Controller;
 
@@ -192,30 +192,6 @@ fn stopping_works_in_the_middle_of_the_others_arming() {
         assert_eq!((status.state, status.drive_fault), (State::Disarmed, 0));
         host.arm();
     }
-}
-
-#[test]
-fn stopping_is_for_everybody_and_needs_no_session() {
-    let mut host = streaming();
-    assert!(host.device.board().is_driven());
-    let answer = host.manage(Action::Stop, 7);
-    assert_eq!(
-        answer,
-        Some(management::Answer::Stop {
-            token: 7,
-            done: true
-        })
-    );
-    host.run(21);
-    assert!(!host.device.board().is_driven());
-    // Comms hears of it behind the blocks that were ready before.
-    host.run(21);
-    let status = host.status();
-    assert_eq!(
-        (status.state, status.drive_fault, status.comms_fault),
-        (State::Disarmed, 0, 0)
-    );
-    host.arm();
 }
 
 #[test]

@@ -76,58 +76,6 @@ fn the_host_understands_them() {
 }
 
 #[test]
-fn unknown_requests_are_stalled_and_the_next_one_works() {
-    let vendor = ControlRequest {
-        request_type: 0xc0,
-        request: 0x55,
-        value: 1,
-        index: 2,
-    };
-    let device_qualifier = ControlRequest {
-        value: 0x0600,
-        ..GET_DESCRIPTOR
-    };
-    let no_such_string = ControlRequest {
-        value: 0x0309,
-        index: 0x0409,
-        ..GET_DESCRIPTOR
-    };
-    let set_vendor = ControlRequest {
-        request_type: 0x40,
-        ..vendor
-    };
-    let break_signal = ControlRequest {
-        request_type: 0x21,
-        request: 0x23,
-        value: 100,
-        index: 0,
-    };
-    with_host(Echo::default(), |mut device, mut cable, host| {
-        let control = host.device().control;
-        let stalled = TransferError::Stalled { endpoint: 0 };
-        let line_coding = ControlRequest {
-            request_type: 0xa1,
-            request: 0x21,
-            value: 0,
-            index: 0,
-        };
-        for request in [vendor, device_qualifier, no_such_string] {
-            let answer = control.read(&mut cable, &mut device.turn(), request, 64);
-            assert_eq!(answer, Err(stalled), "{request:?}");
-        }
-        for data in [&[][..], &[1, 2, 3]] {
-            for request in [set_vendor, break_signal] {
-                let answer = control.write(&mut cable, &mut device.turn(), request, data);
-                assert_eq!(answer, Err(stalled), "{request:?}");
-            }
-        }
-        let answer = control.read(&mut cable, &mut device.turn(), line_coding, 7);
-        assert_eq!(answer, Ok(vec![0x00, 0xc2, 0x01, 0x00, 0, 0, 8]));
-        assert_eq!(device.end.hosts_lost, 0);
-    });
-}
-
-#[test]
 fn no_device_is_an_error_at_the_first_request() {
     let absent = EnumerationError::Transfer {
         step: Step::GetPacketSize,

@@ -23,6 +23,7 @@ const TESTS: [(&str, &[&str]); 3] = [
              --test symptom_scenes --test reference_cases --test runs",
             "-p crepitus-studies --lib",
             "-p crepitus-device --lib",
+            "-p crepitus-client --test fuzz",
         ],
     ),
     (
@@ -34,7 +35,11 @@ const TESTS: [(&str, &[&str]); 3] = [
     ),
     (
         "protocol",
-        &["-p crepitus-protocol --tests", "-p crepitus-device --tests"],
+        &[
+            "-p crepitus-protocol --tests",
+            "-p crepitus-device --tests",
+            "-p crepitus-virtual-device --test commits --test hosts",
+        ],
     ),
 ];
 

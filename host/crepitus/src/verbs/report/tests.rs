@@ -212,11 +212,3 @@ fn the_accounting_begins_before_the_first_row_by_what_is_missing_there() {
     assert_eq!(first_s(2.0, &SampleAccounting::default()), 0.0);
     assert_eq!(first_s(0.0, &SampleAccounting::default()), 0.0);
 }
-
-#[test]
-fn span_and_recorded_time_differ_by_what_is_missing() {
-    let page = page(&[(1_000, 1, 200), (9_000, 1, 200)]);
-    for part in ["recorded time", "0.400 s", "0.600 s from the first"] {
-        assert!(page.contains(part), "{part}");
-    }
-}

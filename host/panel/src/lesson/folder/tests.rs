@@ -41,30 +41,6 @@ fn names_of_folders_are_sanitised() {
 }
 
 #[test]
-fn recordings_are_named_by_trial_alone() {
-    assert_eq!(recording_name(1), "trial-01.parquet");
-    assert_eq!(recording_name(200), "trial-200.parquet");
-}
-
-#[test]
-fn a_folder_is_made_with_its_parents_and_never_shared() {
-    let parent = tempfile::tempdir().unwrap();
-    let lessons = parent.path().join("a/b");
-    let first = SessionFolder::create(&lessons, &session("x y")).unwrap();
-    let second = SessionFolder::create(&lessons, &session("x y")).unwrap();
-    assert_eq!(
-        names(&lessons),
-        ["1970-01-01-000000-x-y", "1970-01-01-000000-x-y-2"]
-    );
-    assert_ne!(first, second);
-    assert_eq!(
-        names(first.path()),
-        ["answers.csv", "notes.csv", "session.json"]
-    );
-    assert_eq!(first.recording(3), first.path().join("trial-03.parquet"));
-}
-
-#[test]
 fn a_parent_that_is_a_file_is_an_error() {
     let parent = tempfile::tempdir().unwrap();
     let file = parent.path().join("file");
@@ -124,11 +100,4 @@ fn what_is_no_session_cannot_be_read() {
     fs::write(folder.path().join(SESSION), "{}").unwrap();
     let error = SessionFolder::open(folder.path()).unwrap_err();
     assert!(matches!(error, FolderError::Session { .. }), "{error}");
-}
-
-#[test]
-fn a_spreadsheet_gets_no_formula() {
-    assert_eq!(as_text("=1+1"), "'=1+1");
-    assert_eq!(as_text("@x"), "'@x");
-    assert_eq!(as_text("1 = 1"), "1 = 1");
 }
