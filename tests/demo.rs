@@ -5,7 +5,7 @@ mod support;
 use serde_json::Value;
 use std::fs;
 use std::time::{Duration, Instant};
-use support::{check_books, names, recording, refuses, rows, run, stderr, stdout, summary};
+use support::{check_accounting, names, recording, refuses, rows, run, stderr, stdout, summary};
 
 #[test]
 fn the_demo_records_and_reports_every_sample() {
@@ -43,7 +43,7 @@ fn the_demo_records_and_reports_every_sample() {
     // No row is missing, and the revision changes where it should.
     let recording = recording(&out.join("recording.parquet"));
     assert!(recording.is_complete());
-    check_books(&recording);
+    check_accounting(&recording);
     let mut revisions = Vec::new();
     for pair in rows(&recording).windows(2) {
         if pair[0].revision != pair[1].revision {

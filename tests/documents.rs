@@ -78,6 +78,31 @@ fn every_link_leads_somewhere() {
 }
 
 #[test]
+fn every_source_file_that_is_named_exists() {
+    let root = repository();
+    let mut files = Vec::new();
+    for folder in ["model", "protocol", "device", "firmware", "sim", "host", "tests", "tools", "fuzz", "python"] {
+        rust_files(&root.join(folder), &mut files);
+    }
+    let mut missing = Vec::new();
+    for document in documents() {
+        let text = fs::read_to_string(&document).unwrap();
+        for event in Parser::new_ext(&text, Options::all()) {
+            // `NAME.rs` stands for any file.
+            if let Event::Code(name) = event
+                && name.ends_with(".rs")
+                && !name.contains(['*', ' ', '{'])
+                && !name.contains("NAME")
+                && !files.iter().any(|file| file.ends_with(name.as_ref()))
+            {
+                missing.push(format!("{}: {name}", document.display()));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "{missing:#?}");
+}
+
+#[test]
 fn every_page_is_in_the_summary() {
     let docs = repository().join("docs");
     let summary = fs::read_to_string(docs.join("SUMMARY.md")).unwrap();

@@ -9,7 +9,7 @@ mod support;
 use serde_json::Value;
 use std::env::var_os;
 use std::process::Output;
-use support::{check_books, recording, run, stderr, stdout};
+use support::{check_accounting, recording, run, stderr, stdout};
 
 fn emulated(arguments: &[&str]) -> Output {
     let mut all = arguments.to_vec();
@@ -87,7 +87,7 @@ fn every_verb_works_on_the_images() {
 }
 
 #[test]
-fn a_recording_of_the_images_has_exact_books() {
+fn a_recording_of_the_images_has_an_exact_accounting() {
     if !is_there() {
         return;
     }
@@ -96,7 +96,7 @@ fn a_recording_of_the_images_has_exact_books() {
     let path = file.to_str().expect("a path");
     done(&["record", path, "--for", "300ms", "--arm", "--zero"]);
     let recording = recording(&file);
-    check_books(&recording);
+    check_accounting(&recording);
 }
 
 #[test]

@@ -16,7 +16,7 @@ use std::thread::sleep;
 use std::time::Duration;
 use support::served::{Served, ended, signal, until};
 use support::{
-    HALF_A_SECOND, check_books, crepitus, length, recording, repository, rows, stderr, stdout,
+    HALF_A_SECOND, check_accounting, crepitus, length, recording, repository, rows, stderr, stdout,
 };
 
 #[test]
@@ -137,7 +137,7 @@ fn a_host_that_is_killed_leaves_a_device_without_torque_and_a_recording() {
         "{}",
         stdout(&output)
     );
-    assert!(check_books(&recording(&file)).received > 9_000);
+    assert!(check_accounting(&recording(&file)).received > 9_000);
 }
 
 /// Loss and return of the device, as when the cable is pulled and the device restarts.
@@ -168,13 +168,13 @@ fn a_recording_goes_on_when_the_device_comes_back() {
         stderr(&output)
     );
     let recording = recording(&file);
-    let books = recording.accounting();
+    let accounting = recording.accounting();
     assert!(recording.is_complete());
-    assert_eq!((books.drive_restarts, books.segments.len()), (1, 2));
+    assert_eq!((accounting.drive_restarts, accounting.segments.len()), (1, 2));
     let rows = rows(&recording);
-    assert_eq!(rows.len() as u64, books.totals.received);
+    assert_eq!(rows.len() as u64, accounting.totals.received);
     assert!(rows.len() > 18_000);
-    let second = usize::try_from(books.segments[1].first_row).unwrap();
+    let second = usize::try_from(accounting.segments[1].first_row).unwrap();
     assert!(rows[second].tick < rows[second - 1].tick, "a new start");
     assert!(rows.windows(2).all(|pair| pair[0].time_s < pair[1].time_s));
     drop(served);

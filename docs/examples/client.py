@@ -84,6 +84,6 @@ for number in range(1, 201):
     while tick < first_tick:  # Blocks of before, for another program's subscription.
         block = wait_for(b"T" + tag)
         sequence, tick, revision, dropped = (unvarint(block) for _ in range(4))
-    assert tick + 20 - first_tick == 20 * number + dropped - dropped_before, "samples are missing from the books"
+    assert tick + 20 - first_tick == 20 * number + dropped - dropped_before, "samples are missing from the accounting"
 print("count %d, model %g N·m, torque %g N·m, %d mA, flags %#06x" % struct.unpack("<iffhH", bytes(block)[-56:-40]))
 arms and request(b"\x08")

@@ -8,7 +8,7 @@
 //!   driven only after a request to arm to this start of comms, and at most a
 //!   millisecond after a stop or disarming has reached it;
 //! - a request of before a restart of comms, or of before, is not executed;
-//! - **the books**: every block at the host continues those before it: samples
+//! - **the accounting**: every block at the host continues those before it: samples
 //!   produced are those received, those that its count says were dropped, and
 //!   those that this wire has lost, by the client's own accounting; none comes
 //!   twice. Comms counts what the link has lost;

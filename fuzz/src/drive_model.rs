@@ -338,7 +338,7 @@ impl DriveModel {
             }
             // The drive has restarted.
             1 => {
-                // Mostly with the next number. The books see five bits of it: one
+                // Mostly with the next number. The accounting sees five bits of it: one
                 // of long ago would be taken for the same start, so it is not that often.
                 let start = match bytes.byte() {
                     64.. if self.restarts < MOST_RESTARTS => {

@@ -3,7 +3,7 @@
 use crate::errors;
 use crate::following::{failure, follow};
 use crate::knee::knee;
-use crate::received::{books_json, not_recorded, recorded, unsubscribed};
+use crate::received::{accounting_json, not_recorded, recorded, unsubscribed};
 use crate::samples::Samples;
 use crate::scene::Scene;
 use crepitus_client::connection::{Connection, OpenError, device_text, parameters};
@@ -279,7 +279,7 @@ impl Device {
         every: u64,
     ) -> PyResult<(Bound<'py, PyDict>, String)> {
         let time = duration(seconds)?;
-        let (samples, books) = self.work(py, |client| {
+        let (samples, accounting) = self.work(py, |client| {
             let mut samples = Samples::default();
             let mut converter = crepitus_recording::Samples::default();
             let mut revision = None;
@@ -297,11 +297,11 @@ impl Device {
                 }
                 Ok(())
             });
-            let books = client.accounting().map_or(Value::Null, books_json);
+            let accounting = client.accounting().map_or(Value::Null, accounting_json);
             unsubscribed(client, result)?;
-            Ok((samples, books.to_string()))
+            Ok((samples, accounting.to_string()))
         })?;
-        Ok((samples.into_dict(py)?, books))
+        Ok((samples.into_dict(py)?, accounting))
     }
 
     /// Records every sample for a duration, s; returns the accounting (JSON), or `None` if no

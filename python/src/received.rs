@@ -42,7 +42,7 @@ pub(crate) fn recorded(
 }
 
 /// Returns the accounting of samples as JSON.
-pub(crate) fn books_json(accounting: &Accounting) -> Value {
+pub(crate) fn accounting_json(accounting: &Accounting) -> Value {
     json!({
         "produced": accounting.produced(),
         "received": accounting.received(),

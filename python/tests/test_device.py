@@ -52,9 +52,9 @@ def test_a_session(device: Device) -> None:
     assert device.armed
     stream = device.stream(1.0)
     device.disarm()
-    samples, books = stream.samples, stream.books
-    assert books["produced"] == books["received"] + books["dropped"] == len(samples["tick"])
-    assert books["dropped"] == 0 and len(samples["tick"]) >= 19_900
+    samples, accounting = stream.samples, stream.accounting
+    assert accounting["produced"] == accounting["received"] + accounting["dropped"] == len(samples["tick"])
+    assert accounting["dropped"] == 0 and len(samples["tick"]) >= 19_900
     assert (np.diff(samples["tick"].astype(np.int64)) == 1).all()
     assert np.allclose(np.diff(samples["t_s"]), 5e-5, atol=1e-12)
     assert np.abs(samples["torque_nm"]).max() <= 1.1 + 1e-6
@@ -142,13 +142,13 @@ def test_a_recording_is_the_tools(device: Device, tool: Tool, tmp_path: Path) ->
     file = tmp_path / "monday.crepitus"
     device.zero()
     device.arm()
-    books = device.record(file, 1.0, title="Monday")
+    accounting = device.record(file, 1.0, title="Monday")
     device.disarm()
-    assert books is not None and books["produced"] == books["received"] + books["dropped"]
+    assert accounting is not None and accounting["produced"] == accounting["received"] + accounting["dropped"]
     recording = crepitus.read_recording(file)
     assert recording.complete and recording.warnings == []
     assert recording.metadata["title"] == "Monday"
-    assert recording.books["totals"] == books
+    assert recording.accounting["totals"] == accounting
     done = tool("export", file, "--format", "csv", "--out", tmp_path / "monday.csv")
     assert done.returncode == 0, done.stderr
     with (tmp_path / "monday.csv").open(newline="") as text:

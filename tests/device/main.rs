@@ -7,7 +7,7 @@ mod support;
 
 use serde_json::Value;
 use std::fs;
-use support::{check_books, recording, run, run_line, stderr, stdout, summary, words};
+use support::{check_accounting, recording, run, run_line, stderr, stdout, summary, words};
 
 /// Runs a verb on a simulated device.
 fn sim(arguments: &[&str]) -> std::process::Output {
@@ -241,7 +241,7 @@ fn a_recording_is_reported() {
         "First try",
     ]);
     assert_eq!(said["telemetry"]["dropped"], 0);
-    let totals = check_books(&recording(&file));
+    let totals = check_accounting(&recording(&file));
     assert_eq!(said["telemetry"]["received"], totals.received);
     // It is not written over.
     let again = sim(&["record", path, "--for", "1s"]);
@@ -277,7 +277,7 @@ fn a_recording_that_a_fault_ends_is_named() {
     let said: Value = serde_json::from_str(&stdout(&output)).unwrap();
     assert_eq!(said["file"].as_str(), file.to_str());
     assert_eq!(said["error"]["exit_code"], 1);
-    let received = check_books(&recording(&file)).received;
+    let received = check_accounting(&recording(&file)).received;
     assert_eq!(said["telemetry"]["received"], received);
     let message = said["error"]["message"].as_str().unwrap();
     for part in [

@@ -1,6 +1,6 @@
 //! Exports: whole, on a full disk, and in the hands of other programs.
 
-use crate::support::{self, check_books, names, recording, rows, run, stderr, stdout};
+use crate::support::{self, check_accounting, names, recording, rows, run, stderr, stdout};
 use crate::{recorded, recording_in_progress, text};
 use crepitus_recording::{Damage, Recording};
 use serde_json::Value;
@@ -120,7 +120,7 @@ fn pandas_polars_and_duckdb_open_the_file() {
                  about = json.loads(m.metadata[b'crepitus'])\n\
                  t = p.read_table('{path}')\n\
                  assert about['columns']['torque_nm'].endswith('N·m')\n\
-                 assert about['books']['totals']['received'] == len(t)\n\
+                 assert about['accounting']['totals']['received'] == len(t)\n\
                  assert about['parameters'][0]['values']['crepitus.static_torque_nm'] > 0\n\
                  assert len(about['comms']['serial']) == 24 and len(about['drive']['serial']) == 24\n\
                  print(len(t), sum(t['count'].to_pylist()), len(t) - t['current_a'].null_count, t['limit'][0])"
@@ -171,6 +171,6 @@ fn findings_are_json_for_programs() {
     let recording = Recording::open(&log, Damage::Refuse).unwrap();
     assert_eq!(
         said["telemetry"]["received"],
-        check_books(&recording).received
+        check_accounting(&recording).received
     );
 }

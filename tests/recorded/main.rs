@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
-use support::{check_books, crepitus, names, recording, run, stderr, stdout, summary};
+use support::{check_accounting, crepitus, names, recording, run, stderr, stdout, summary};
 
 /// A recording of the simulated device, half a second long.
 fn record(folder: &Path, name: &str) -> Output {
@@ -84,7 +84,7 @@ fn any_name_works_and_the_hint_can_be_pasted() {
     for name in all {
         let recording = recording(&folder.join(name));
         assert!(recording.is_complete());
-        assert_eq!(check_books(&recording).dropped, 0);
+        assert_eq!(check_accounting(&recording).dropped, 0);
         let again = record(folder, name);
         assert_eq!(again.status.code(), Some(2));
         assert!(stderr(&again).contains("already exists"));
@@ -186,7 +186,7 @@ fn a_recording_that_ctrl_c_ends_becomes_a_parquet_file() {
     assert!(fs::read(&file).unwrap().starts_with(b"PAR1"));
     let recording = recording(&file);
     assert!(recording.is_complete());
-    assert!(check_books(&recording).received > 40_000);
+    assert!(check_accounting(&recording).received > 40_000);
 }
 
 /// A recording that nobody can read is not reported as whole.
@@ -299,7 +299,7 @@ fn what_is_missing_is_said_first_and_drawn() {
     let output = run(&[&export[..], &["--salvage"]].concat());
     assert!(output.status.success(), "{}", stderr(&output));
     let kept = recording(&kept);
-    assert_eq!(check_books(&kept).damaged, missing);
+    assert_eq!(check_accounting(&kept).damaged, missing);
 }
 
 /// The file as it was before it became Parquet: that of a full disk.

@@ -87,7 +87,7 @@ fn many_programs_are_killed_at_random() {
 /// A recording, complete or not, whose accounting is true.
 fn readable(path: &Path) -> Recording {
     let recording = recording(path);
-    support::check_books(&recording);
+    support::check_accounting(&recording);
     if !recording.is_complete() {
         let warnings = recording.warnings();
         assert!(warnings[0].contains("incomplete"), "{warnings:?}");

@@ -35,10 +35,10 @@ fn file(served: &Served, name: &str) -> PathBuf {
 }
 
 /// The accounting of a recording that ended in order, recounted.
-fn check_books(file: &Path) -> [u64; 3] {
+fn check_accounting(file: &Path) -> [u64; 3] {
     let recording = recording(file);
     assert!(recording.is_complete());
-    let totals = support::check_books(&recording);
+    let totals = support::check_accounting(&recording);
     [totals.produced, totals.received, totals.dropped]
 }
 
@@ -58,7 +58,7 @@ fn everything_works_while_another_program_is_armed() {
     let path = file(&served, "a.csv");
     let recorded = served.run(&["record", path.to_str().unwrap(), "--for", "500ms"]);
     assert!(recorded.status.success(), "{}", stderr(&recorded));
-    let [_, received, dropped] = check_books(&path);
+    let [_, received, dropped] = check_accounting(&path);
     assert!(received >= 9_000 && dropped == 0, "{received} {dropped}");
     let info = served.info();
     assert_eq!(info["status"]["state"], "armed");
@@ -235,7 +235,7 @@ fn the_others_go_on_when_the_first_program_ends() {
         assert!(!stderr(&output).contains("lost"), "{}", stderr(&output));
     }
     for path in [&second, &third] {
-        let [_, received, dropped] = check_books(path);
+        let [_, received, dropped] = check_accounting(path);
         // The time in which nobody had the port open.
         assert!(received > 10_000 && dropped < 4_000, "{received} {dropped}");
     }
@@ -456,7 +456,7 @@ fn signals_end_a_command_in_order() {
         signal(&child, name);
         let output = child.wait_with_output().unwrap();
         assert!(output.status.success(), "{name}: {}", stderr(&output));
-        let [_, received, dropped] = check_books(&path);
+        let [_, received, dropped] = check_accounting(&path);
         assert!(received > 5_000, "{name}");
         assert_eq!(dropped, 0, "{name}");
         let info = served.info();

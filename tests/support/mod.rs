@@ -149,7 +149,7 @@ pub(crate) fn rows(recording: &Recording) -> Vec<Row> {
 
 /// The accounting of a recording, recounted in its rows. The drive has not
 /// restarted.
-pub(crate) fn check_books(recording: &Recording) -> Totals {
+pub(crate) fn check_accounting(recording: &Recording) -> Totals {
     let totals = recording.accounting().totals;
     assert_eq!(totals.produced, totals.received + totals.dropped);
     let rows = rows(recording);

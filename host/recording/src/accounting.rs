@@ -196,7 +196,7 @@ impl SampleAccounting {
 /// Keeps the accounting as blocks arrive.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ledger {
-    books: SampleAccounting,
+    accounting: SampleAccounting,
     /// Place in the current segment.
     position: Option<StreamPosition>,
     /// Beginnings of all segments, as they were reported.
@@ -215,20 +215,20 @@ impl Ledger {
                 if position.start() == begin.start && begin.first_tick >= position.next_tick() =>
             {
                 let missing = begin.first_tick - position.next_tick();
-                self.books
+                self.accounting
                     .gap(position.next_tick(), missing, Cause::NotConnected);
-                self.books.totals.not_connected += missing;
+                self.accounting.totals.not_connected += missing;
             }
             // Also with the same number, where its ticks have gone back: a device
             // that does not keep its count, or 32 restarts.
-            Some(_) => self.books.drive_restarts += 1,
+            Some(_) => self.accounting.drive_restarts += 1,
             None => {}
         }
         self.begin(begin);
     }
 
     fn begin(&mut self, begin: Begin) {
-        self.books.segment(begin.first_tick, begin.start);
+        self.accounting.segment(begin.first_tick, begin.start);
         self.position = Some(StreamPosition::at(begin));
         self.begins.push(begin);
     }
@@ -272,14 +272,14 @@ impl Ledger {
         let missing = match position.take(block) {
             Taken::Next(missing) => missing,
             Taken::Restarted(missing) => {
-                self.books.drive_restarts += 1;
+                self.accounting.drive_restarts += 1;
                 self.begin(Begin::after_restart(block));
                 missing
             }
             Taken::Old => return false,
         };
         self.missing(missing);
-        let totals = &mut self.books.totals;
+        let totals = &mut self.accounting.totals;
         let samples = block.samples.len() as u64;
         totals.produced += samples;
         totals.received += samples;
@@ -302,9 +302,9 @@ impl Ledger {
             _ if by_device == missing.samples => Cause::Device,
             _ => Cause::Both,
         };
-        self.books.gap(missing.first_tick, missing.samples, cause);
-        self.books.totals.by_device += by_device;
-        self.books.totals.damaged += damaged;
+        self.accounting.gap(missing.first_tick, missing.samples, cause);
+        self.accounting.totals.by_device += by_device;
+        self.accounting.totals.damaged += damaged;
     }
 
     /// The recording has ended: samples up to that of the drive are missing.
@@ -315,14 +315,14 @@ impl Ledger {
             Some(position) => position.skip_to(end),
             None => end,
         };
-        self.books.gap(first_tick, missing, Cause::OnTheWay);
-        self.books.missing_at_end = missing;
+        self.accounting.gap(first_tick, missing, Cause::OnTheWay);
+        self.accounting.missing_at_end = missing;
     }
 
     /// True if this start of the drive is over. Their numbers have five bits.
     fn is_past(&self, start: u8) -> bool {
         let mut latest = Vec::new();
-        for segment in self.books.segments.iter().rev() {
+        for segment in self.accounting.segments.iter().rev() {
             if latest.last() != Some(&segment.start) {
                 latest.push(segment.start);
             }
@@ -340,29 +340,29 @@ impl Ledger {
 
     /// The recorder had received so many samples up to here.
     pub(crate) fn expect_received(&mut self, received: u64) {
-        let totals = &mut self.books.totals;
+        let totals = &mut self.accounting.totals;
         let absent = received.saturating_sub(totals.received);
         let most = totals.damaged + totals.on_the_way();
         totals.damaged = totals.damaged.max(absent.min(most));
         // If some are left it is not known which.
         if totals.on_the_way() == 0 {
-            for gap in &mut self.books.gaps {
+            for gap in &mut self.accounting.gaps {
                 if matches!(gap.cause, Cause::OnTheWay | Cause::Both) {
                     gap.cause = Cause::Damaged;
                 }
             }
         }
         if core::mem::take(&mut self.begin_is_unknown) {
-            self.books.damaged_before(absent.saturating_sub(most));
+            self.accounting.damaged_before(absent.saturating_sub(most));
         }
     }
 
     pub(crate) fn accounting(&self) -> &SampleAccounting {
-        &self.books
+        &self.accounting
     }
 
-    pub(crate) fn into_books(self) -> SampleAccounting {
-        self.books
+    pub(crate) fn into_accounting(self) -> SampleAccounting {
+        self.accounting
     }
 
     /// The tick after the last sample.

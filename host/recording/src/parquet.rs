@@ -53,7 +53,8 @@ pub(crate) struct About {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) ending: Option<Ending>,
     pub(crate) parameters: History,
-    pub(crate) books: SampleAccounting,
+    #[serde(rename = "books")]
+    pub(crate) accounting: SampleAccounting,
     /// Damage of the file that it was made of, in sentences.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(crate) damage: Vec<String>,

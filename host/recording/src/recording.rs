@@ -79,7 +79,7 @@ pub enum Format {
 pub struct Recording {
     path: PathBuf,
     metadata: Metadata,
-    books: SampleAccounting,
+    accounting: SampleAccounting,
     history: History,
     is_complete: bool,
     ending: Option<Ending>,
@@ -139,7 +139,7 @@ impl Recording {
         Ok(Self {
             path: path.to_owned(),
             metadata: scanned.metadata,
-            books: scanned.ledger.into_books(),
+            accounting: scanned.ledger.into_accounting(),
             history: scanned.history,
             is_complete: scanned.is_complete,
             ending: scanned.ending,
@@ -156,7 +156,7 @@ impl Recording {
         Ok(Self {
             path: path.to_owned(),
             metadata: read.metadata,
-            books: read.books,
+            accounting: read.accounting,
             history: read.parameters,
             is_complete: read.is_complete,
             ending: read.ending,
@@ -179,7 +179,7 @@ impl Recording {
 
     /// The accounting, counted in what is readable.
     pub fn accounting(&self) -> &SampleAccounting {
-        &self.books
+        &self.accounting
     }
 
     /// The parameters.
@@ -189,7 +189,7 @@ impl Recording {
 
     /// True if it was ended in order, not cut off, and nothing is missing at its end.
     pub fn is_complete(&self) -> bool {
-        self.is_complete && self.books.missing_at_end == 0
+        self.is_complete && self.accounting.missing_at_end == 0
     }
 
     /// True if its program has written its end.
@@ -252,7 +252,7 @@ impl Recording {
     }
 
     fn missing(&self) -> Option<String> {
-        let totals = &self.books.totals;
+        let totals = &self.accounting.totals;
         let causes = [
             ("dropped by the device", totals.by_device),
             ("lost on the way", totals.on_the_way()),
@@ -273,15 +273,15 @@ impl Recording {
                 totals.dropped,
                 totals.produced,
                 seconds(totals.dropped),
-                self.books.gap_count,
-                if self.books.gap_count == 1 { "" } else { "s" },
+                self.accounting.gap_count,
+                if self.accounting.gap_count == 1 { "" } else { "s" },
                 causes.join(", ")
             )
         })
     }
 
     fn missing_at_end(&self) -> Option<String> {
-        let samples = self.books.missing_at_end;
+        let samples = self.accounting.missing_at_end;
         (samples > 0).then(|| {
             format!(
                 "Its end is missing, {samples} samples ({:.3} s): the device had produced them by then, and \
@@ -297,7 +297,7 @@ impl Recording {
     /// [`ReadError::Io`].
     pub fn rows(&self) -> Result<Rows<'_>, ReadError> {
         let source = match &self.source {
-            Source::Log(file) => LogRows::new(file, &self.history, self.books.totals.received)
+            Source::Log(file) => LogRows::new(file, &self.history, self.accounting.totals.received)
                 .map(|rows| RowSource::Log(Box::new(rows))),
             #[cfg(feature = "parquet")]
             Source::Parquet(reader) => Ok(RowSource::Parquet(reader.rows())),

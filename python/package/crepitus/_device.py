@@ -27,11 +27,11 @@ class Stream:
         samples: Columns, a row a sample of 50 µs (or every n-th): ``t_s``, ``angle_rad``,
             ``omega_rad_s``, ``model_torque_nm``, ``torque_nm`` (commanded to the motor), ``current_a``,
             ``phase``, ``limit`` (why the torque is not the model's), …; what was not measured is NaN.
-        books: Samples ``produced`` = ``received`` + ``dropped``; of the latter ``by_device``.
+        accounting: Samples ``produced`` = ``received`` + ``dropped``; of the latter ``by_device``.
     """
 
     samples: Columns = field(repr=False)
-    books: dict[str, int]
+    accounting: dict[str, int]
 
 
 @dataclass(frozen=True)
@@ -40,14 +40,14 @@ class Recording:
 
     Attributes:
         samples: Columns, a row a sample.
-        books: ``totals``, ``segments``, ``gaps``.
+        accounting: ``totals``, ``segments``, ``gaps``.
         metadata: Title, versions and serial numbers of the device.
         complete: Whether it was ended in order.
         warnings: What may be wrong with it.
     """
 
     samples: Columns = field(repr=False)
-    books: dict[str, Any] = field(repr=False)
+    accounting: dict[str, Any] = field(repr=False)
     metadata: dict[str, Any]
     complete: bool
     warnings: list[str]
@@ -228,8 +228,8 @@ class Device:
             DeviceError: The connection was lost, or an armed device has disarmed by itself.
             KeyboardInterrupt: After Ctrl-C; the device is disarmed first.
         """
-        samples, books = self._device.stream(seconds, _whole("every", every))
-        return Stream(samples, json.loads(books))
+        samples, accounting = self._device.stream(seconds, _whole("every", every))
+        return Stream(samples, json.loads(accounting))
 
     def record(
         self,
@@ -240,11 +240,11 @@ class Device:
     ) -> dict[str, int] | None:
         """Records every sample to a file, as ``crepitus record`` does; it must not exist.
 
-        Returns the books; ``None`` if no sample came, and then there is no file. After an error the file
+        Returns the accounting; ``None`` if no sample came, and then there is no file. After an error the file
         holds what came before. Read it with :func:`read_recording` or ``crepitus report``.
         """
-        books = self._device.record(os.fspath(file), seconds, title)
-        return None if books is None else json.loads(books)
+        accounting = self._device.record(os.fspath(file), seconds, title)
+        return None if accounting is None else json.loads(accounting)
 
     def __repr__(self) -> str:
         return repr(self._device)

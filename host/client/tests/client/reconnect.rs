@@ -1,6 +1,6 @@
 //! A connection that is lost and reopened.
 
-use crate::support::{check_books, connected, ms, pump_for};
+use crate::support::{check_accounting, connected, ms, pump_for};
 use crepitus_client::{Error, Event, RequestKind, Transport, TransportError};
 use crepitus_protocol::management::ResetCause;
 use crepitus_protocol::{Fault, Revision, State};
@@ -25,7 +25,7 @@ fn a_lost_connection_is_reported_once_and_resumes_its_subscription() {
     assert_eq!(client.pump(ms(20)).unwrap_err(), not_connected);
     assert_eq!(client.status().unwrap_err(), not_connected);
     let until = client.accounting().unwrap().next_tick();
-    let before = check_books(&client);
+    let before = check_accounting(&client);
 
     // The device is not back yet.
     let error = client.reconnect(ms(300)).unwrap_err();
@@ -45,7 +45,7 @@ fn a_lost_connection_is_reported_once_and_resumes_its_subscription() {
     assert!(again.unseen().unwrap() >= 300 * 20, "{again:?}");
 
     pump_for(&mut client, ms(100));
-    let after = check_books(&client);
+    let after = check_accounting(&client);
     assert_eq!(after[0], after[1], "what was not seen is in no accounting");
     assert!(after[1] >= before[1] + 1_900);
     assert_eq!(shared.borrow().drive.state(), State::Faulted);
@@ -110,7 +110,7 @@ fn a_power_cycle_restarts_the_device() {
         "ticks begin anew"
     );
     pump_for(&mut client, ms(100));
-    let [produced, received, _, _] = check_books(&client);
+    let [produced, received, _, _] = check_accounting(&client);
     assert_eq!(produced, received);
     assert!(produced > 11_000);
 }

@@ -1,6 +1,6 @@
 //! Every sample, or the number of those that are missing.
 
-use crate::support::{Port, check_books, client, connected, device, ms, pump_for, turning};
+use crate::support::{Port, check_accounting, client, connected, device, ms, pump_for, turning};
 use crepitus_client::{Client, Event, Transport, TransportError};
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::management::ResetCause;
@@ -42,7 +42,7 @@ fn on_a_lossy_line_the_sum_still_holds() {
         (line.lose, line.flip, line.double) = (2_000, 2_000, 2_000);
     }
     let blocks = blocks_for(&mut client, ms(3_000));
-    let [produced, received, dropped, lost] = check_books(&client);
+    let [produced, received, dropped, lost] = check_accounting(&client);
     assert_eq!(received, 20 * blocks.len() as u64);
     assert_eq!(
         produced,
@@ -67,7 +67,7 @@ fn frames_that_come_twice_are_taken_once() {
     let accounting = client.accounting().unwrap();
     assert!(accounting.old_blocks() >= 4);
     assert_eq!(accounting.dropped(), 0);
-    check_books(&client);
+    check_accounting(&client);
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn a_slow_host_gets_the_count_of_lost_samples() {
     pump_for(&mut client, ms(100));
     client.transport_mut().wait(ms(500));
     pump_for(&mut client, ms(200));
-    let [_, _, dropped, lost] = check_books(&client);
+    let [_, _, dropped, lost] = check_accounting(&client);
     // The host was away for 500 ms, of which about 60 found room on the way.
     assert!((8_000..10_000).contains(&dropped), "{dropped}");
     assert_eq!(lost, 0);
@@ -96,7 +96,7 @@ fn a_computer_that_is_slow_at_receiving_hands_out_all_that_it_receives() {
     let blocks = blocks_for(&mut client, ms(2_000)).len();
     assert!((850..1_050).contains(&blocks), "{blocks}");
     assert_eq!(client.unheard(), None);
-    check_books(&client);
+    check_accounting(&client);
 }
 
 /// The request at the end is answered more than a second later, behind all the blocks.
@@ -141,7 +141,7 @@ fn the_link_between_the_controllers_may_lose_some_too() {
         shared.borrow_mut().link_is_cut = false;
     }
     pump_for(&mut client, ms(20));
-    let [_, _, dropped, lost] = check_books(&client);
+    let [_, _, dropped, lost] = check_accounting(&client);
     assert_eq!((dropped, lost), (20 * 3 * 20, 0));
     let counters = client.counters().unwrap();
     assert_eq!(counters.comms[CommsCounter::LostSamples.index()], 1_200);
@@ -166,7 +166,7 @@ fn a_restart_of_the_drive_is_reported_and_the_sums_continue() {
     assert_eq!(now.drive_fault, Fault::DriveWatchdog.code());
     assert_eq!(now.comms_fault, Fault::DriveRestarted.code());
     assert!(!client.is_armed());
-    let [produced, received, _, _] = check_books(&client);
+    let [produced, received, _, _] = check_accounting(&client);
     assert_eq!(produced, received);
     assert!(produced > 3_900, "{produced}");
     assert_eq!(client.accounting().unwrap().restarts(), 1);
@@ -189,7 +189,7 @@ fn silence_is_reported_once() {
     assert_eq!(silences, 1, "{events:?}");
     shared.borrow_mut().link_is_cut = false;
     pump_for(&mut client, ms(50));
-    let [produced, received, by_device, _] = check_books(&client);
+    let [produced, received, by_device, _] = check_accounting(&client);
     assert_eq!(produced, received + by_device);
     assert!(by_device >= 39_000, "{by_device}");
 }
@@ -213,7 +213,7 @@ fn a_restart_of_comms_is_noticed_and_the_subscription_resumed() {
     let back = client.reconnect(ms(500)).unwrap();
     assert!(back.resubscribed.unwrap().unseen().unwrap() < 4_000);
     pump_for(&mut client, ms(50));
-    let [produced, received, _, _] = check_books(&client);
+    let [produced, received, _, _] = check_accounting(&client);
     assert_eq!(produced, received);
     assert!(received >= 1_900, "{received}");
 }
@@ -227,13 +227,13 @@ fn a_new_subscription_restarts_the_accounting() {
     let second = client.subscribe().unwrap().first_tick;
     assert!(second >= first + 1_400);
     pump_for(&mut client, ms(50));
-    let [produced, received, _, _] = check_books(&client);
+    let [produced, received, _, _] = check_accounting(&client);
     assert_eq!(produced, received);
     assert!(produced <= 1_040, "{produced}");
     client.unsubscribe().unwrap();
-    let after = check_books(&client);
+    let after = check_accounting(&client);
     assert!(pump_for(&mut client, ms(50)).is_empty());
-    assert_eq!(check_books(&client), after);
+    assert_eq!(check_accounting(&client), after);
 }
 
 #[test]
@@ -243,7 +243,7 @@ fn a_subscription_whose_reply_is_lost_misses_nothing() {
     client.subscribe().unwrap();
     assert_eq!(client.tally().repeats, 1);
     pump_for(&mut client, ms(100));
-    let [produced, received, _, _] = check_books(&client);
+    let [produced, received, _, _] = check_accounting(&client);
     assert_eq!(produced, received);
     assert!(produced >= 3_800, "{produced}");
 }
@@ -258,7 +258,7 @@ fn blocks_are_dropped_when_the_event_queue_is_full() {
     }
     assert!((1_000..1_200).contains(&client.tally().unread_blocks));
     pump_for(&mut client, ms(1_000));
-    let [_, _, dropped, lost] = check_books(&client);
+    let [_, _, dropped, lost] = check_accounting(&client);
     assert_eq!((dropped, lost), (0, 20 * client.tally().unread_blocks));
 }
 
@@ -274,6 +274,6 @@ fn blocks_of_an_earlier_program_do_no_harm() {
     assert!(client.accounting().is_none());
     client.subscribe().unwrap();
     pump_for(&mut client, ms(50));
-    let [produced, received, _, _] = check_books(&client);
+    let [produced, received, _, _] = check_accounting(&client);
     assert_eq!(produced, received);
 }

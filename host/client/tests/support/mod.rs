@@ -85,7 +85,7 @@ pub fn refusal<R: std::fmt::Debug>(result: Result<R, Error>) -> Refusal {
 }
 
 /// Checks the sample accounting, with the expected losses.
-pub fn check_books(client: &Client<Port>) -> [u64; 4] {
+pub fn check_accounting(client: &Client<Port>) -> [u64; 4] {
     let accounting = client.accounting().unwrap();
     assert_eq!(accounting.violations(), 0);
     assert_eq!(

@@ -219,9 +219,9 @@ pub(super) fn write_into(
 }
 
 /// Tells the figures what lies before a row: missing samples, or a restart of the drive.
-fn note_step(collector: &mut Collector, before: Option<&Row>, row: &Row, books: &SampleAccounting) {
+fn note_step(collector: &mut Collector, before: Option<&Row>, row: &Row, accounting: &SampleAccounting) {
     let Some(before) = before else {
-        let from_s = first_time_s(row, books);
+        let from_s = first_time_s(row, accounting);
         if row.time_s - from_s > 0.5 * TICK_S {
             collector.gap(from_s, row.time_s);
         }
@@ -241,8 +241,8 @@ fn note_step(collector: &mut Collector, before: Option<&Row>, row: &Row, books: 
 }
 
 /// Start of the accounting, s: before the first row, if samples are missing there.
-fn first_time_s(first: &Row, books: &SampleAccounting) -> f64 {
-    let gaps = books.gaps.iter().take_while(|gap| gap.row == 0);
+fn first_time_s(first: &Row, accounting: &SampleAccounting) -> f64 {
+    let gaps = accounting.gaps.iter().take_while(|gap| gap.row == 0);
     let missing = gaps.map(|gap| gap.samples).sum();
     (first.time_s - seconds(missing)).min(0.0)
 }

@@ -5,7 +5,7 @@ use super::{Cause, Gap, LISTED_GAPS, SampleAccounting, Segment};
 /// Counts rows and gaps in the ticks alone, to compare them with the accounting.
 #[derive(Clone, Debug)]
 pub struct Recount<'b> {
-    books: &'b SampleAccounting,
+    accounting: &'b SampleAccounting,
     rows: u64,
     next_tick: u64,
     segments: usize,
@@ -18,9 +18,9 @@ pub struct Recount<'b> {
 
 impl<'b> Recount<'b> {
     /// Begins before the first row.
-    pub fn new(books: &'b SampleAccounting) -> Self {
+    pub fn new(accounting: &'b SampleAccounting) -> Self {
         Self {
-            books,
+            accounting,
             rows: 0,
             next_tick: 0,
             segments: 0,
@@ -33,7 +33,7 @@ impl<'b> Recount<'b> {
 
     /// Takes the next row's tick.
     pub fn row(&mut self, tick: u64) {
-        while let Some(segment) = self.books.segments.get(self.segments)
+        while let Some(segment) = self.accounting.segments.get(self.segments)
             && segment.first_row <= self.rows
         {
             self.enter(segment);
@@ -57,7 +57,7 @@ impl<'b> Recount<'b> {
         if self.gaps.len() < LISTED_GAPS {
             let (row, first_tick) = (self.rows, self.next_tick);
             let same = |gap: &&Gap| (gap.first_tick, gap.samples) == (first_tick, samples);
-            let known = self.books.gaps.iter().find(same);
+            let known = self.accounting.gaps.iter().find(same);
             self.gaps.push(Gap {
                 row,
                 first_tick,
@@ -69,9 +69,9 @@ impl<'b> Recount<'b> {
 
     /// The accounting of these rows, of which others are damaged.
     #[cfg(feature = "parquet")]
-    pub(crate) fn into_books(mut self) -> SampleAccounting {
-        let mut books = self.books.clone();
-        let totals = &mut books.totals;
+    pub(crate) fn into_accounting(mut self) -> SampleAccounting {
+        let mut accounting = self.accounting.clone();
+        let totals = &mut accounting.totals;
         self.missing(
             totals
                 .produced
@@ -80,24 +80,24 @@ impl<'b> Recount<'b> {
         totals.damaged += totals.received.saturating_sub(self.rows);
         totals.dropped = totals.produced.saturating_sub(self.rows);
         totals.received = self.rows;
-        books.missing_at_end = match self.gaps.last() {
+        accounting.missing_at_end = match self.gaps.last() {
             Some(gap) if gap.row == self.rows => gap.samples,
             _ => 0,
         };
         // Of the last ones no row may be left.
-        books
+        accounting
             .segments
             .retain(|segment| segment.first_row < self.rows);
-        books.gap_count = self.gap_count;
-        books.gaps = self.gaps;
-        books
+        accounting.gap_count = self.gap_count;
+        accounting.gaps = self.gaps;
+        accounting
     }
 
     fn enter(&mut self, segment: &Segment) {
         let before = self
             .segments
             .checked_sub(1)
-            .map(|last| self.books.segments[last]);
+            .map(|last| self.accounting.segments[last]);
         // Both segments are of one start of the drive: samples were produced meanwhile.
         if before.is_some_and(|before| before.start == segment.start) {
             self.missing(segment.first_tick.saturating_sub(self.next_tick));
@@ -108,23 +108,23 @@ impl<'b> Recount<'b> {
 
     /// Differences from the accounting, in words; none if they agree.
     pub fn differences(mut self) -> Vec<String> {
-        while let Some(segment) = self.books.segments.get(self.segments) {
+        while let Some(segment) = self.accounting.segments.get(self.segments) {
             self.enter(segment);
         }
-        self.missing(self.books.missing_at_end);
-        let totals = &self.books.totals;
+        self.missing(self.accounting.missing_at_end);
+        let totals = &self.accounting.totals;
         let produced = self.rows.saturating_add(self.dropped);
         let counts = [
             ("samples produced", produced, totals.produced),
             ("rows", self.rows, totals.received),
             ("missing samples", self.dropped, totals.dropped),
-            ("gaps", self.gap_count, self.books.gap_count),
+            ("gaps", self.gap_count, self.accounting.gap_count),
             ("rows out of order", self.disordered, 0),
         ];
         counts
             .into_iter()
             .filter(|(_, counted, said)| counted != said)
-            .map(|(what, counted, said)| format!("{what}: {counted}, but its books say {said}"))
+            .map(|(what, counted, said)| format!("{what}: {counted}, but its accounting say {said}"))
             .collect()
     }
 }

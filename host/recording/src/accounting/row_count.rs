@@ -1,4 +1,4 @@
-//! Books of a recording whose own are lost, from its rows.
+//! Accounting of a recording whose own are lost, from its rows.
 
 use super::{Cause, SampleAccounting};
 use crate::row::{Row, Step};
@@ -7,7 +7,7 @@ use crate::row::{Row, Step};
 /// file count as lost on the way.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RowCount {
-    books: SampleAccounting,
+    accounting: SampleAccounting,
     before: Option<Row>,
 }
 
@@ -18,7 +18,7 @@ impl RowCount {
             Some(Step::Next) => 0,
             Some(Step::Missing(samples)) => samples,
             begin @ (None | Some(Step::Restart)) => {
-                self.books.drive_restarts += u32::from(begin.is_some());
+                self.accounting.drive_restarts += u32::from(begin.is_some());
                 self.begin(row.tick, lost)
             }
         };
@@ -28,8 +28,8 @@ impl RowCount {
         } else {
             Cause::OnTheWay
         };
-        self.books.gap(row.tick - missing, missing, cause);
-        let totals = &mut self.books.totals;
+        self.accounting.gap(row.tick - missing, missing, cause);
+        let totals = &mut self.accounting.totals;
         totals.damaged += damaged;
         totals.produced += 1;
         totals.received += 1;
@@ -40,12 +40,12 @@ impl RowCount {
     fn begin(&mut self, tick: u64, lost: u64) -> u64 {
         let missing = lost.min(tick);
         // Numbers of starts that differ from one to the next: the drive's own are lost.
-        let start = u8::from(!self.books.segments.len().is_multiple_of(2));
-        self.books.segment(tick - missing, start);
+        let start = u8::from(!self.accounting.segments.len().is_multiple_of(2));
+        self.accounting.segment(tick - missing, start);
         missing
     }
 
-    pub(crate) fn into_books(self) -> SampleAccounting {
-        self.books
+    pub(crate) fn into_accounting(self) -> SampleAccounting {
+        self.accounting
     }
 }

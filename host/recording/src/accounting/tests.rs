@@ -33,16 +33,16 @@ fn without_the_begin_of_the_subscription_nothing_is_missing_before_the_first_blo
     assert_eq!((totals.dropped, totals.by_device), (20, 20));
     // What the recorder had is known from then on.
     ledger.expect_received(100);
-    let books = ledger.into_books();
-    let totals = books.totals;
+    let accounting = ledger.into_accounting();
+    let totals = accounting.totals;
     assert_eq!((totals.produced, totals.received), (120, 40));
     assert_eq!(
         (totals.dropped, totals.by_device, totals.damaged),
         (80, 20, 60)
     );
-    assert_eq!(books.segments[0].first_tick, 72_000_000 - 60);
-    assert_eq!((books.gap_count, books.gaps[0].samples), (2, 60));
-    let mut recount = Recount::new(&books);
+    assert_eq!(accounting.segments[0].first_tick, 72_000_000 - 60);
+    assert_eq!((accounting.gap_count, accounting.gaps[0].samples), (2, 60));
+    let mut recount = Recount::new(&accounting);
     (72_000_000..72_000_020).for_each(|tick| recount.row(tick));
     (72_000_040..72_000_060).for_each(|tick| recount.row(tick));
     assert_eq!(recount.differences(), Vec::<String>::new());
@@ -73,9 +73,9 @@ fn every_missing_sample_has_a_cause() {
     // The drive restarts and drops its first block.
     take(&mut ledger, &block(20, 20, 2));
     take(&mut ledger, &block(40, 20, 2));
-    let books = ledger.into_books();
+    let accounting = ledger.into_accounting();
     assert_eq!(
-        books.totals,
+        accounting.totals,
         Totals {
             produced: 380,
             received: 140,
@@ -85,8 +85,8 @@ fn every_missing_sample_has_a_cause() {
             damaged: 40,
         }
     );
-    assert_eq!(books.totals.on_the_way(), 40);
-    let causes: Vec<_> = books.gaps.iter().map(|gap| (gap.row, gap.cause)).collect();
+    assert_eq!(accounting.totals.on_the_way(), 40);
+    let causes: Vec<_> = accounting.gaps.iter().map(|gap| (gap.row, gap.cause)).collect();
     assert_eq!(
         causes,
         [
@@ -98,9 +98,9 @@ fn every_missing_sample_has_a_cause() {
             (100, Cause::Device),
         ]
     );
-    assert_eq!((books.drive_restarts, books.segments.len()), (1, 3));
+    assert_eq!((accounting.drive_restarts, accounting.segments.len()), (1, 3));
     let recount = |ticks: &[u64]| {
-        let mut recount = Recount::new(&books);
+        let mut recount = Recount::new(&accounting);
         for tick in ticks {
             recount.row(*tick);
         }
@@ -130,9 +130,9 @@ fn a_gap_of_samples_that_the_recorder_had_is_damaged() {
         // 20 by the device, 20 that are not there.
         assert!(ledger.block(&block(80, 20, 1)));
         ledger.expect_received(received);
-        let books = ledger.into_books();
-        let gaps: Vec<_> = books.gaps.iter().map(|gap| gap.cause).collect();
-        (books.totals.damaged, gaps)
+        let accounting = ledger.into_accounting();
+        let gaps: Vec<_> = accounting.gaps.iter().map(|gap| gap.cause).collect();
+        (accounting.totals.damaged, gaps)
     };
     let [way, both] = [Cause::OnTheWay, Cause::Both];
     assert_eq!(causes(40), (0, vec![way, both]));
@@ -151,9 +151,9 @@ fn every_start_of_the_drive_is_taken_and_nothing_of_the_one_before() {
         let late = block(20, 0, start - 1);
         assert!(!ledger.block(&late), "before start {start}");
     }
-    let books = ledger.into_books();
-    assert_eq!((books.drive_restarts, books.segments.len()), (40, 41));
-    assert_eq!((books.totals.received, books.totals.dropped), (820, 0));
+    let accounting = ledger.into_accounting();
+    assert_eq!((accounting.drive_restarts, accounting.segments.len()), (40, 41));
+    assert_eq!((accounting.totals.received, accounting.totals.dropped), (820, 0));
 }
 
 #[test]
@@ -163,6 +163,6 @@ fn a_restart_with_the_same_number_is_one() {
     assert!(ledger.block(&block(1_000, 0, 1)));
     ledger.subscribed(begin(200, 0, 1));
     assert!(ledger.block(&block(200, 0, 1)));
-    let books = ledger.into_books();
-    assert_eq!((books.drive_restarts, books.totals.dropped), (1, 0));
+    let accounting = ledger.into_accounting();
+    assert_eq!((accounting.drive_restarts, accounting.totals.dropped), (1, 0));
 }

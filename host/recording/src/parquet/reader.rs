@@ -59,7 +59,7 @@ impl Reader {
         };
         reader.keep(seals, &mut about, &mut findings)?;
         if is_lost {
-            about.books = reader.counted()?;
+            about.accounting = reader.counted()?;
         }
         Ok((reader, about, findings))
     }
@@ -71,8 +71,8 @@ impl Reader {
         about: &mut About,
         findings: &mut Findings,
     ) -> io::Result<()> {
-        let books = about.books.clone();
-        let mut recount = Recount::new(&books);
+        let accounting = about.accounting.clone();
+        let mut recount = Recount::new(&accounting);
         let mut kept = Vec::new();
         let mut next_row = 0;
         for seal in own_groups(seals, &about.metadata.id, findings) {
@@ -84,7 +84,7 @@ impl Reader {
                 continue;
             };
             if seal.first_row > next_row {
-                let of = match books.totals.received {
+                let of = match accounting.totals.received {
                     // The accounting of the file is lost.
                     0 => String::new(),
                     all => format!(" of {all}"),
@@ -101,10 +101,10 @@ impl Reader {
             kept.push((seal.first_row, rows.len() as u64));
             self.seals.push(seal);
         }
-        if next_row < books.totals.received {
+        if next_row < accounting.totals.received {
             findings.add(format!(
                 "Rows {next_row} to {} are missing at its end",
-                books.totals.received - 1
+                accounting.totals.received - 1
             ));
         }
         if findings.is_empty() {
@@ -114,17 +114,17 @@ impl Reader {
             return Ok(());
         }
         forget_lost_rows(about, &kept);
-        let books = about.books.clone();
-        let mut recount = Recount::new(&books);
+        let accounting = about.accounting.clone();
+        let mut recount = Recount::new(&accounting);
         let mut rows = self.rows();
         while let Some(row) = rows.next()? {
             recount.row(row.tick);
         }
-        about.books = recount.into_books();
+        about.accounting = recount.into_accounting();
         Ok(())
     }
 
-    /// Books of its rows, which have none.
+    /// Accounting of its rows, which have none.
     fn counted(&self) -> io::Result<SampleAccounting> {
         let mut count = RowCount::default();
         let mut next_row = 0;
@@ -136,7 +136,7 @@ impl Reader {
             }
             next_row = seal.first_row + rows.len() as u64;
         }
-        Ok(count.into_books())
+        Ok(count.into_accounting())
     }
 
     /// The rows of a group that was read before.
@@ -345,7 +345,7 @@ fn forget_lost_rows(about: &mut About, kept: &[(u64, u64)]) {
             .map(|(first, rows)| row.saturating_sub(*first).min(*rows))
             .sum::<u64>()
     };
-    for segment in &mut about.books.segments {
+    for segment in &mut about.accounting.segments {
         segment.first_row = kept_before(segment.first_row);
     }
     for set in &mut about.parameters.0 {

@@ -49,7 +49,7 @@ pub(crate) fn write(
         is_complete: recording.is_ended(),
         ending: recording.ending().cloned(),
         parameters: recording.parameters().clone(),
-        books: recording.accounting().clone(),
+        accounting: recording.accounting().clone(),
         damage: recording.inherited_damage(),
     };
     let id = about.metadata.id.clone();

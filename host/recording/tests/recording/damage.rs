@@ -2,7 +2,7 @@
 //! readable is kept.
 
 use crate::support::{
-    Sent, check_books, is_part, mangled, open, recorded, rows, rows_of, salvaged, sent,
+    Sent, check_accounting, is_part, mangled, open, recorded, rows, rows_of, salvaged, sent,
 };
 use crepitus_protocol::parameters::id;
 use crepitus_recording::{Damage, ReadError, Recording};
@@ -46,7 +46,7 @@ impl Bench {
         let kept = rows(&salvaged);
         assert!(is_part(&kept, &self.all), "{said}");
         assert!(kept.len() >= rows_least, "{} rows kept: {said}", kept.len());
-        check_books(&salvaged);
+        check_accounting(&salvaged);
         assert!(!salvaged.warnings().is_empty());
         said
     }
@@ -328,7 +328,7 @@ fn no_bytes_are_too_strange() {
         let path = bench.path();
         fs::write(&path, &bytes).unwrap();
         if let Ok(recording) = Recording::open(&path, Damage::Salvage) {
-            check_books(&recording);
+            check_accounting(&recording);
             read += 1;
         }
     }

@@ -1,6 +1,6 @@
 //! Disks that fail, and power that is cut.
 
-use crate::support::{check_books, is_part, metadata, record, rows, rows_of, salvaged, sent};
+use crate::support::{check_accounting, is_part, metadata, record, rows, rows_of, salvaged, sent};
 use crepitus_recording::{Background, Disk, Recorder};
 use std::io::{self, ErrorKind};
 use std::path::Path;
@@ -104,7 +104,7 @@ fn whatever_write_fails_what_was_written_before_is_read() {
             let kept = rows(&recording);
             assert_eq!(kept, all[..kept.len()]);
             assert!(kept.len() >= before);
-            check_books(&recording);
+            check_accounting(&recording);
             before = kept.len();
         }
     }
@@ -167,7 +167,7 @@ fn whenever_power_is_cut_everything_up_to_the_last_second_is_read() {
             let kept = rows(&recording);
             assert!(kept.len() >= sure, "cut at {cut}: {} of {sure}", kept.len());
             assert!(is_part(&kept, &all));
-            check_books(&recording);
+            check_accounting(&recording);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The Parquet file of a recording.
 
 use crate::support::{
-    check_books, is_part, mangled, open, plain, recorded, rows, rows_of, salvaged, sent, sent_of,
+    check_accounting, is_part, mangled, open, plain, recorded, rows, rows_of, salvaged, sent, sent_of,
 };
 use crepitus_pages::recorded::Analysis;
 use crepitus_recording::{Cause, Damage, Format, Recording, Row, parquet_writer};
@@ -49,7 +49,7 @@ impl Bench {
         let kept = rows(&recording);
         assert!(is_part(&kept, &self.all));
         assert!(kept.len() >= least, "{} rows kept: {said}", kept.len());
-        check_books(&recording);
+        check_accounting(&recording);
         let mut analysis = Analysis::new(&recording);
         for row in &kept {
             analysis.row(row);
@@ -89,7 +89,7 @@ fn the_file_holds_all_that_the_log_held() {
         rows.iter().map(bits).collect()
     };
     assert_eq!(bits(&rows(&parquet)), bits(&rows(&log)));
-    check_books(&parquet);
+    check_accounting(&parquet);
     let again = bench.folder.path().join("again");
     converted(&bench.folder.path().join("parquet"), &again);
     assert_eq!(
@@ -291,12 +291,12 @@ fn rows_are_kept_without_any_metadata() {
     let whole = open(&bench.folder.path().join("parquet")).unwrap();
     assert_eq!(recording.metadata().id, whole.metadata().id);
     assert_eq!(recording.metadata().columns, whole.metadata().columns);
-    let books = recording.accounting();
-    assert_eq!(books.drive_restarts, 1);
+    let accounting = recording.accounting();
+    assert_eq!(accounting.drive_restarts, 1);
     // But for those that the drive produced first after its restart, and dropped.
     let totals = whole.accounting().totals;
-    assert_eq!(books.totals.received, totals.received);
-    assert_eq!(books.totals.dropped, totals.dropped - 20);
+    assert_eq!(accounting.totals.received, totals.received);
+    assert_eq!(accounting.totals.dropped, totals.dropped - 20);
     // A group that is damaged besides: the rest is kept.
     let mut damaged = damaged;
     damaged[bench.whole.len() / 20] ^= 1;
@@ -405,7 +405,7 @@ fn no_bytes_are_too_strange() {
         let path = bench.write(&bytes);
         assert!(open(&path).is_err(), "nothing was noticed");
         if let Ok(recording) = Recording::open(&path, Damage::Salvage) {
-            check_books(&recording);
+            check_accounting(&recording);
             read += 1;
         }
     }
@@ -432,5 +432,5 @@ fn the_first_parquet_file_with_these_columns_is_still_read() {
     }
     let recording = open(&path).unwrap();
     assert_eq!(rows(&recording), rows_of(&sent_of(10, plain)));
-    check_books(&recording);
+    check_accounting(&recording);
 }

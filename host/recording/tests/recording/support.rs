@@ -200,7 +200,7 @@ pub(crate) fn rows(recording: &Recording) -> Vec<Row> {
 }
 
 /// The accounting add up, and are those of the rows.
-pub(crate) fn check_books(recording: &Recording) {
+pub(crate) fn check_accounting(recording: &Recording) {
     let totals = recording.accounting().totals;
     assert_eq!(totals.produced, totals.received + totals.dropped);
     assert!(totals.by_device + totals.not_connected + totals.damaged <= totals.dropped);

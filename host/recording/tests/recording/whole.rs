@@ -1,7 +1,7 @@
 //! Recordings that ended in order, or were cut off.
 
 use crate::support::{
-    check_books, metadata, open, plain, record, recorded, rows, rows_of, sent, sent_of,
+    check_accounting, metadata, open, plain, record, recorded, rows, rows_of, sent, sent_of,
 };
 use crepitus_pages::recorded::Analysis;
 use crepitus_recording::{Cause, ReadError, Recorder, Totals};
@@ -17,10 +17,10 @@ fn what_was_recorded_is_read_with_its_gaps_and_parameters() {
     assert!(recording.is_complete());
     assert_eq!(recording.metadata().title, "a test");
     assert_eq!(rows(&recording), rows_of(&sent));
-    check_books(&recording);
-    let books = recording.accounting();
+    check_accounting(&recording);
+    let accounting = recording.accounting();
     assert_eq!(
-        books.totals,
+        accounting.totals,
         Totals {
             produced: 30_000 + 40 + 20 + 4_000 + 20,
             received: 30_000,
@@ -30,7 +30,7 @@ fn what_was_recorded_is_read_with_its_gaps_and_parameters() {
             damaged: 0,
         }
     );
-    let causes: Vec<_> = books.gaps.iter().map(|gap| gap.cause).collect();
+    let causes: Vec<_> = accounting.gaps.iter().map(|gap| gap.cause).collect();
     assert_eq!(
         causes,
         [
@@ -40,7 +40,7 @@ fn what_was_recorded_is_read_with_its_gaps_and_parameters() {
             Cause::Device
         ]
     );
-    assert_eq!(books.drive_restarts, 1);
+    assert_eq!(accounting.drive_restarts, 1);
     let mut in_force = recording.parameters().in_force();
     for (row, torque) in [
         (0, 0.401),
@@ -109,7 +109,7 @@ fn one_that_was_killed_is_read_up_to_its_last_whole_block() {
         let rows = rows(&recording);
         assert_eq!(rows, all[..rows.len()]);
         assert!(rows.len() >= last);
-        check_books(&recording);
+        check_accounting(&recording);
         last = rows.len();
         longest = longest.max(cut);
     }
@@ -127,7 +127,7 @@ fn one_that_grows_is_read_as_it_was_when_it_was_opened() {
     fs::write(&path, &whole[..whole.len() / 2]).unwrap();
     let recording = open(&path).unwrap();
     fs::write(&path, &whole).unwrap();
-    check_books(&recording);
+    check_accounting(&recording);
     assert!(!recording.is_complete());
     // Not that it was stopped, which nobody knows.
     let warning = &recording.warnings()[0];

@@ -83,8 +83,8 @@ fn the_drive_hangs() {
     assert!(events.contains(&Event::DriveRestarted));
     assert_eq!(resets(&mut host), [vec![Reset::Watchdog], vec![]]);
     assert_eq!(faults(&mut host)[1], Fault::DriveSilent.code());
-    let books = host.accounting().expect("a subscription");
-    assert_eq!((books.lost_on_line(), books.violations()), (0, 0));
+    let accounting = host.accounting().expect("a subscription");
+    assert_eq!((accounting.lost_on_line(), accounting.violations()), (0, 0));
     recover(&mut host);
 }
 
@@ -145,8 +145,8 @@ fn the_cable_is_pulled_and_put_back_while_samples_stream() {
     println!("{resumed:?}");
     assert!(resumed.unseen().expect("the same start of the drive") >= ticks);
     run(&mut host, 20);
-    let books = host.accounting().expect("a subscription");
-    assert_eq!((books.dropped(), books.violations()), (0, 0));
+    let accounting = host.accounting().expect("a subscription");
+    assert_eq!((accounting.dropped(), accounting.violations()), (0, 0));
     assert_eq!(faults(&mut host)[0], Fault::LeaseExpired.code());
     recover(&mut host);
     assert_eq!(resets(&mut host), [vec![], vec![]]);
@@ -172,13 +172,13 @@ fn a_host_that_does_not_read() {
     let port = host.transport_mut().pair.host().expect("it is plugged in");
     port.set_open(true);
     run(&mut host, 20);
-    let books = host.accounting().expect("a subscription");
-    println!("{books:?}");
-    assert!(books.dropped_by_device() > 1_000);
-    assert_eq!(books.violations(), 0);
+    let accounting = host.accounting().expect("a subscription");
+    println!("{accounting:?}");
+    assert!(accounting.dropped_by_device() > 1_000);
+    assert_eq!(accounting.violations(), 0);
     assert_eq!(
-        books.produced(),
-        books.received() + books.dropped_by_device() + books.lost_on_line()
+        accounting.produced(),
+        accounting.received() + accounting.dropped_by_device() + accounting.lost_on_line()
     );
     assert_eq!(host.status().expect("a status").state, State::Armed);
 }

@@ -58,10 +58,10 @@ fn parameters_change_while_samples_stream_and_none_is_lost() {
         assert_eq!(values.get(STATIC_TORQUE), Some(value));
     }
     assert_eq!(revisions, [1, 2, 3, 4, 5].map(Revision));
-    let books = host.accounting().expect("a subscription");
-    println!("{books:?}");
-    assert_eq!((books.dropped(), books.lost_on_line()), (0, 0));
-    assert!(books.received() >= 20 * 120);
+    let accounting = host.accounting().expect("a subscription");
+    println!("{accounting:?}");
+    assert_eq!((accounting.dropped(), accounting.lost_on_line()), (0, 0));
+    assert!(accounting.received() >= 20 * 120);
     let traffic = host.transport_mut().pair.traffic();
     println!("{traffic:?}");
 }

@@ -156,7 +156,7 @@ fn mount(given: &Given, context: &Context, left: Box<dyn Chain>) -> Box<dyn Chai
         contact_m: None,
         volts: 0.0,
         force_n: 0.0,
-        books: EnergyAccount::default(),
+        account: EnergyAccount::default(),
     };
     Loaded::on(left, actuator)
 }
@@ -195,7 +195,7 @@ struct ReactionMass {
     /// Voltage applied to the coil, and force on the carrier, in the last step.
     volts: f64,
     force_n: f64,
-    books: EnergyAccount,
+    account: EnergyAccount,
 }
 
 /// One step of it, for a carrier whose mean velocity is w, rad/s.
@@ -266,13 +266,13 @@ impl ReactionMass {
         match self.contact_m {
             None if self.excursion_m.abs() > self.stroke_m && self.excursion_m * slip_m_s > 0.0 => {
                 self.contact_m = Some(self.excursion_m);
-                self.books.knocks += 1;
+                self.account.knocks += 1;
             }
             Some(met_m) => {
                 let pressed_m = self.excursion_m - met_m;
                 let push_n = BUMPER_N_PER_M * pressed_m + self.bumper_damping * slip_m_s;
                 if push_n * met_m <= 0.0 {
-                    self.books.stops += 0.5 * BUMPER_N_PER_M * pressed_m * pressed_m;
+                    self.account.stops += 0.5 * BUMPER_N_PER_M * pressed_m * pressed_m;
                     self.contact_m = None;
                 }
             }
@@ -310,19 +310,19 @@ impl Load for ReactionMass {
         let h = step.length_s;
         if step.coil == Coil::Open {
             // The field of the coil goes up in the diodes.
-            self.books.copper += 0.5 * self.henry * self.current_a * self.current_a;
+            self.account.copper += 0.5 * self.henry * self.current_a * self.current_a;
             self.current_a = 0.0;
         }
         let solved = self.solve(step, next.angle_rad - h * mean_rad_s);
         let slip = self.slip(&solved, step, mean_rad_s);
         let current_a = solved.current_a + solved.current_slope * slip;
         let mean_m_s = self.lever_m * mean_rad_s + slip;
-        self.books.supply += solved.volts * current_a * h;
-        self.books.copper += self.ohm * current_a * current_a * h;
-        self.books.damping += self.damping * slip * slip * h;
-        self.books.weight += solved.weight_n * mean_m_s * h;
+        self.account.supply += solved.volts * current_a * h;
+        self.account.copper += self.ohm * current_a * current_a * h;
+        self.account.damping += self.damping * slip * slip * h;
+        self.account.weight += solved.weight_n * mean_m_s * h;
         if self.contact_m.is_some() {
-            self.books.stops += self.bumper_damping * slip * slip * h;
+            self.account.stops += self.bumper_damping * slip * slip * h;
         }
         self.volts = solved.volts;
         self.force_n = solved.carried_n + solved.carried_slope * slip;
@@ -346,11 +346,11 @@ impl Load for ReactionMass {
         let v = self.velocity_m_s;
         let pressed_m = self.contact_m.map_or(0.0, |met_m| self.excursion_m - met_m);
         for (what, account, joule) in [
-            ("supply", Account::Given, self.books.supply),
-            ("weight", Account::Given, self.books.weight),
-            ("copper", Account::Lost, self.books.copper),
-            ("damping", Account::Lost, self.books.damping),
-            ("stops", Account::Lost, self.books.stops),
+            ("supply", Account::Given, self.account.supply),
+            ("weight", Account::Given, self.account.weight),
+            ("copper", Account::Lost, self.account.copper),
+            ("damping", Account::Lost, self.account.damping),
+            ("stops", Account::Lost, self.account.stops),
             ("moving mass", Account::Stored, 0.5 * self.mass_kg * v * v),
             (
                 "field",
@@ -374,7 +374,7 @@ impl Load for ReactionMass {
 
     fn write_more(&self, _: &Body, row: &mut Vec<f64>) {
         #[expect(clippy::cast_precision_loss, reason = "a count of knocks")]
-        let knocks = self.books.knocks as f64;
+        let knocks = self.account.knocks as f64;
         row.extend([self.volts, self.current_a, self.excursion_m, knocks]);
     }
 
@@ -383,11 +383,11 @@ impl Load for ReactionMass {
     }
 
     fn warnings(&self, warnings: &mut Vec<String>) {
-        if self.books.knocks > 0 {
+        if self.account.knocks > 0 {
             warnings.push(format!(
                 "the reaction mass met its stops {} times: less vibration-actuator.gain, a higher resonance_hz or more \
                  stroke_mm keeps it off",
-                self.books.knocks
+                self.account.knocks
             ));
         }
     }

@@ -78,11 +78,11 @@ fn another_host_changes_parameters_of_an_armed_device() {
 fn telemetry_belongs_to_a_session() {
     let mut host = streaming();
     host.run(2_000);
-    let books = |host: &Host| {
+    let accounting = |host: &Host| {
         let accounting = host.accounting.as_ref().expect("a subscription");
         (accounting.received, accounting.dropped)
     };
-    let (received, _) = books(&host);
+    let (received, _) = accounting(&host);
     let subscribed = host.ask_as(OTHER, 1, Operation::Subscribe);
     let Some(Ok(Answer::Subscribed { first_tick, .. })) = subscribed else {
         panic!("{subscribed:?}");
@@ -94,7 +94,7 @@ fn telemetry_belongs_to_a_session() {
         Some(Ok(Answer::Done))
     );
     host.run(2_000);
-    let (now_received, dropped) = books(&host);
+    let (now_received, dropped) = accounting(&host);
     assert!(now_received >= received + 3_900);
     assert_eq!(dropped, 0);
     // Nothing is sent once the last one has left.
@@ -105,7 +105,7 @@ fn telemetry_belongs_to_a_session() {
     // What was not sent to anybody is not missed by who comes later.
     host.subscribe();
     host.run(2_000);
-    let (received, dropped) = books(&host);
+    let (received, dropped) = accounting(&host);
     assert!(received >= 1_900 && dropped == 0, "{received} {dropped}");
 }
 

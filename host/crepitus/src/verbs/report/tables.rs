@@ -13,10 +13,10 @@ const SHOWN_GAPS: usize = 20;
 /// `changed_at_s`: when each parameter set took effect.
 pub(super) fn sections(
     s: &RecordingSummary,
-    books: &SampleAccounting,
+    accounting: &SampleAccounting,
     changed_at_s: &[f64],
 ) -> Vec<Section> {
-    let mut sections: Vec<_> = missing(books).into_iter().collect();
+    let mut sections: Vec<_> = missing(accounting).into_iter().collect();
     sections.push(recording(s));
     sections.extend(
         s.model_torque
@@ -65,15 +65,15 @@ pub(super) fn first_sentences(s: &RecordingSummary) -> String {
 }
 
 /// Missing samples come first.
-fn missing(books: &SampleAccounting) -> Option<Section> {
-    let rows = books.gaps.iter().take(SHOWN_GAPS).map(|gap| {
+fn missing(accounting: &SampleAccounting) -> Option<Section> {
+    let rows = accounting.gaps.iter().take(SHOWN_GAPS).map(|gap| {
         let (samples, cause) = (gap.samples, gap.cause.text());
         (
             format!("from tick {}", gap.first_tick),
             format!("{samples} samples, {:.4} s: {cause}", seconds(samples)),
         )
     });
-    let title = match books.gap_count {
+    let title = match accounting.gap_count {
         0 => return None,
         n if n > SHOWN_GAPS as u64 => {
             format!("Missing samples: the first {SHOWN_GAPS} of {n} gaps")

@@ -195,20 +195,20 @@ fn the_accounting_begins_before_the_first_row_by_what_is_missing_there() {
         samples,
         cause: crepitus_recording::Cause::OnTheWay,
     };
-    let books = SampleAccounting {
+    let accounting = SampleAccounting {
         gaps: vec![gap(0, 1_000), gap(0, 3_000), gap(20, 500)],
         ..SampleAccounting::default()
     };
-    let first_s = |time_s: f64, books: &SampleAccounting| {
+    let first_s = |time_s: f64, accounting: &SampleAccounting| {
         let row = Row {
             time_s,
             ..Row::default()
         };
-        first_time_s(&row, books)
+        first_time_s(&row, accounting)
     };
-    assert!((first_s(0.0, &books) + 0.2).abs() < 1e-12);
+    assert!((first_s(0.0, &accounting) + 0.2).abs() < 1e-12);
     // Of a file whose first rows are lost.
-    assert_eq!(first_s(0.2, &books), 0.0);
+    assert_eq!(first_s(0.2, &accounting), 0.0);
     assert_eq!(first_s(2.0, &SampleAccounting::default()), 0.0);
     assert_eq!(first_s(0.0, &SampleAccounting::default()), 0.0);
 }

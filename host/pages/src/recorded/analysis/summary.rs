@@ -114,14 +114,14 @@ impl Tally {
         recording: &Recording,
         differences: Vec<String>,
     ) -> RecordingSummary {
-        let (metadata, books) = (recording.metadata(), recording.accounting());
+        let (metadata, accounting) = (recording.metadata(), recording.accounting());
         let mut warnings = recording.warnings();
         warnings.extend(
             differences
                 .into_iter()
                 .map(|difference| format!("Counted in its rows: {difference}.")),
         );
-        warnings.extend(restarts(books.drive_restarts));
+        warnings.extend(restarts(accounting.drive_restarts));
         if self.armed_rows == 0 && self.rows > 0 {
             warnings.push("The device was never armed, so there was no torque.".to_owned());
         }
@@ -137,15 +137,15 @@ impl Tally {
             drive: metadata.drive.clone(),
             complete: recording.is_complete(),
             ending: recording.ending().cloned(),
-            missing_at_end: books.missing_at_end,
+            missing_at_end: accounting.missing_at_end,
             duration_s: seconds(self.rows),
             span_s: self
                 .ends_s
                 .map_or(0.0, |(first_s, last_s)| last_s - first_s + TICK_S),
             armed_s: seconds(self.armed_rows),
-            telemetry: books.totals,
-            gaps: books.gap_count,
-            drive_restarts: books.drive_restarts,
+            telemetry: accounting.totals,
+            gaps: accounting.gap_count,
+            drive_restarts: accounting.drive_restarts,
             breaks: self.breaks,
             sticks: self.sticks,
             fastest_rad_s: self.fastest_rad_s,
