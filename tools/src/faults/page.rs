@@ -41,8 +41,7 @@ pub fn page(faults: &[Fault]) -> String {
          Made by `{COMMAND}`, which applies one patch of [`tools/faults`](../../tools/faults) at a\n\
          time to a copy of the sources, runs the test that the patch names, and writes the result into the patch. A test that never fails\n\
          shows nothing; this page shows which test fails for what. Faults of the firmware are in images that the emulator runs: modelled\n\
-         silicon, not hardware. `cargo test -p crepitus-tools --test faults` compares this page with the patches. Results of model and\n\
-         firmware are those of an earlier program, which ran more tests on each fault.\n\n"
+         silicon, not hardware. `cargo test -p crepitus-tools --test faults` compares this page with the patches.\n\n"
     );
     let noticed = |fault: &&Fault| matches!(fault.result, Some(Outcome::Noticed(_)));
     // Writing to a String cannot fail.
