@@ -337,8 +337,8 @@ fn what_would_count_for_nothing_is_refused() {
 fn stop_without_a_name_stops_every_device() {
     use std::process::Stdio;
     use support::served::{Served, ended, until};
-    let served = Served::new();
-    let mut second = served.beside("left");
+    let mut served = Served::new();
+    served.add("left");
     let mut arms = ["knee", "left"].map(|name| {
         served
             .command(&["arm", "--zero", "--device", name])
@@ -359,8 +359,6 @@ fn stop_without_a_name_stops_every_device() {
         assert!(said.contains(&format!("process {} ", arm.id())), "{said}");
         assert!(!ended(arm).success());
     }
-    second.kill().unwrap();
-    second.wait().unwrap();
 }
 
 #[cfg(target_os = "linux")]

@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 /// `serve-sim`, until it is dropped.
 pub(crate) struct Served {
     child: Child,
+    others: Vec<Child>,
     pub(crate) home: tempfile::TempDir,
 }
 
@@ -31,12 +32,16 @@ impl Served {
 
     fn of(home: tempfile::TempDir, more: &[&str]) -> Self {
         let child = serve(&home, "knee", more);
-        Self { child, home }
+        Self {
+            child,
+            others: Vec::new(),
+            home,
+        }
     }
 
-    /// Another one beside it, of this name.
-    pub(crate) fn beside(&self, name: &str) -> Child {
-        serve(&self.home, name, &[])
+    /// Serves another one beside it, of this name.
+    pub(crate) fn add(&mut self, name: &str) {
+        self.others.push(serve(&self.home, name, &[]));
     }
 
     /// Kills it; its files stay.
@@ -86,8 +91,11 @@ fn serve(home: &tempfile::TempDir, name: &str, more: &[&str]) -> Child {
 
 impl Drop for Served {
     fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
+        // Also after a test that has failed.
+        for child in self.others.iter_mut().chain([&mut self.child]) {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
     }
 }
 
