@@ -81,7 +81,10 @@ fn every_link_leads_somewhere() {
 fn every_source_file_that_is_named_exists() {
     let root = repository();
     let mut files = Vec::new();
-    for folder in ["model", "protocol", "device", "firmware", "sim", "host", "tests", "tools", "fuzz", "python"] {
+    for folder in [
+        "model", "protocol", "device", "firmware", "sim", "host", "tests", "tools", "fuzz",
+        "python",
+    ] {
         rust_files(&root.join(folder), &mut files);
     }
     let mut missing = Vec::new();

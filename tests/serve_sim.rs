@@ -170,7 +170,10 @@ fn a_recording_goes_on_when_the_device_comes_back() {
     let recording = recording(&file);
     let accounting = recording.accounting();
     assert!(recording.is_complete());
-    assert_eq!((accounting.drive_restarts, accounting.segments.len()), (1, 2));
+    assert_eq!(
+        (accounting.drive_restarts, accounting.segments.len()),
+        (1, 2)
+    );
     let rows = rows(&recording);
     assert_eq!(rows.len() as u64, accounting.totals.received);
     assert!(rows.len() > 18_000);

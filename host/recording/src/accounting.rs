@@ -302,7 +302,8 @@ impl Ledger {
             _ if by_device == missing.samples => Cause::Device,
             _ => Cause::Both,
         };
-        self.accounting.gap(missing.first_tick, missing.samples, cause);
+        self.accounting
+            .gap(missing.first_tick, missing.samples, cause);
         self.accounting.totals.by_device += by_device;
         self.accounting.totals.damaged += damaged;
     }

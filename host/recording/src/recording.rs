@@ -274,7 +274,11 @@ impl Recording {
                 totals.produced,
                 seconds(totals.dropped),
                 self.accounting.gap_count,
-                if self.accounting.gap_count == 1 { "" } else { "s" },
+                if self.accounting.gap_count == 1 {
+                    ""
+                } else {
+                    "s"
+                },
                 causes.join(", ")
             )
         })

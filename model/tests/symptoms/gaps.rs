@@ -188,12 +188,14 @@ const DECAYS: [(f64, u32); 2] = [(0.3, 0), (0.03, 6_000)];
 #[test]
 fn a_blade_that_has_fallen_obeys_a_commit() {
     for (collapse_s, later) in DECAYS {
-        let knife = |onset_torque_nm, slope_nm_per_rad| on!(clasp_knife: ClaspKnifeSettings {
-            onset_torque_nm,
-            slope_nm_per_rad,
-            collapse_s,
-            ..ClaspKnifeSettings::default()
-        });
+        let knife = |onset_torque_nm, slope_nm_per_rad| {
+            on!(clasp_knife: ClaspKnifeSettings {
+                onset_torque_nm,
+                slope_nm_per_rad,
+                collapse_s,
+                ..ClaspKnifeSettings::default()
+            })
+        };
         let mut rig = only::<f64>(knife(0.8, 3.0), 70.0);
         // The resistance falls at 75 deg, from 3.2 N·m to 0.15 of them.
         let rest = moved(&mut rig, 70_f64.to_radians(), 1_800 + later);
@@ -208,13 +210,15 @@ fn a_blade_that_has_fallen_obeys_a_commit() {
 #[test]
 fn an_onset_that_is_moved_behind_the_joint_pushes_nobody() {
     for (trigger, from_deg) in [(0, 20.0), (1, 45.0)] {
-        let knife = |onset_deg| on!(clasp_knife: ClaspKnifeSettings {
-            trigger,
-            onset_deg,
-            release_deg: 90.0,
-            onset_torque_nm: 3.0,
-            ..ClaspKnifeSettings::default()
-        });
+        let knife = |onset_deg| {
+            on!(clasp_knife: ClaspKnifeSettings {
+                trigger,
+                onset_deg,
+                release_deg: 90.0,
+                onset_torque_nm: 3.0,
+                ..ClaspKnifeSettings::default()
+            })
+        };
         let mut rig = only::<f64>(knife(80.0), from_deg);
         let rest = moved(&mut rig, f64::to_radians(from_deg), 10_000);
         rig.commit(knife(40.0));
@@ -232,14 +236,16 @@ fn an_onset_that_is_moved_behind_the_joint_pushes_nobody() {
 fn let_go(muscles: u8, has_fallen: bool) -> (Word, (f64, f64), f64) {
     // Flexors: the mirror image about 60 deg.
     let along = if muscles == 0 { 1.0 } else { -1.0 };
-    let knife = |onset_deg: f64, release_deg: f64| on!(clasp_knife: ClaspKnifeSettings {
-        muscles,
-        onset_deg: 60.0 + along * (onset_deg - 60.0),
-        release_deg: 60.0 + along * (release_deg - 60.0),
-        onset_torque_nm: 2.0,
-        residual_share: 0.5,
-        ..ClaspKnifeSettings::default()
-    });
+    let knife = |onset_deg: f64, release_deg: f64| {
+        on!(clasp_knife: ClaspKnifeSettings {
+            muscles,
+            onset_deg: 60.0 + along * (onset_deg - 60.0),
+            release_deg: 60.0 + along * (release_deg - 60.0),
+            onset_torque_nm: 2.0,
+            residual_share: 0.5,
+            ..ClaspKnifeSettings::default()
+        })
+    };
     let release_deg = if has_fallen { 45.0 } else { 90.0 };
     let mut at = (60.0 - along * 21.0_f64).to_radians();
     let mut rig = only::<f64>(knife(40.0, release_deg), at.to_degrees());
@@ -281,17 +287,19 @@ fn an_onset_that_is_moved_before_the_joint_lets_go_within_the_slew_limit() {
 #[test]
 fn a_muscle_that_has_caught_obeys_a_commit() {
     for (release_s, later) in DECAYS {
-        let muscle = |torque_nm| on!(spasticity: SpasticitySettings {
-            form: 0,
-            threshold_deg: 40.0,
-            velocity_shift_s: 0.0,
-            threshold_velocity_deg_s: 20.0,
-            torque_nm,
-            release_s,
-            stiffness_nm_per_rad: 0.0,
-            residual_share: 0.8,
-            ..SpasticitySettings::default()
-        });
+        let muscle = |torque_nm| {
+            on!(spasticity: SpasticitySettings {
+                form: 0,
+                threshold_deg: 40.0,
+                velocity_shift_s: 0.0,
+                threshold_velocity_deg_s: 20.0,
+                torque_nm,
+                release_s,
+                stiffness_nm_per_rad: 0.0,
+                residual_share: 0.8,
+                ..SpasticitySettings::default()
+            })
+        };
         let mut rig = only::<f64>(muscle(3.0), 39.0);
         let rest = moved(&mut rig, 39_f64.to_radians(), 600 + later);
         let nm = committed(&mut rig, muscle(0.1), rest);

@@ -9,7 +9,11 @@ use std::path::Path;
 fn the_page_is_that_of_the_patches_and_has_no_hole() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let faults = all(&root).unwrap_or_else(|error| panic!("{error}"));
-    let holes: Vec<String> = faults.iter().filter(|fault| is_hole(fault)).map(line).collect();
+    let holes: Vec<String> = faults
+        .iter()
+        .filter(|fault| is_hole(fault))
+        .map(line)
+        .collect();
     assert!(holes.is_empty(), "{}", holes.join("\n"));
     let text = fs::read_to_string(root.join(FILE)).expect("the page");
     let is_current = text == page(&faults);

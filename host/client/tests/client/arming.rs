@@ -1,6 +1,6 @@
 //! Arming and the lease.
 
-use crate::support::{client, connected, ms, pump_for, refusal, turning};
+use crate::support::{connected, ms, pump_for, refusal, turning};
 use crepitus_client::{Error, Event, Transport};
 use crepitus_protocol::counters::{CommsCounter, DriveCounter};
 use crepitus_protocol::host::Refusal;

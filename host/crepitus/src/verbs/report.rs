@@ -219,7 +219,12 @@ pub(super) fn write_into(
 }
 
 /// Tells the figures what lies before a row: missing samples, or a restart of the drive.
-fn note_step(collector: &mut Collector, before: Option<&Row>, row: &Row, accounting: &SampleAccounting) {
+fn note_step(
+    collector: &mut Collector,
+    before: Option<&Row>,
+    row: &Row,
+    accounting: &SampleAccounting,
+) {
     let Some(before) = before else {
         let from_s = first_time_s(row, accounting);
         if row.time_s - from_s > 0.5 * TICK_S {

@@ -124,7 +124,9 @@ impl<'b> Recount<'b> {
         counts
             .into_iter()
             .filter(|(_, counted, said)| counted != said)
-            .map(|(what, counted, said)| format!("{what}: {counted}, but its accounting say {said}"))
+            .map(|(what, counted, said)| {
+                format!("{what}: {counted}, but its accounting say {said}")
+            })
             .collect()
     }
 }

@@ -86,7 +86,11 @@ fn every_missing_sample_has_a_cause() {
         }
     );
     assert_eq!(accounting.totals.on_the_way(), 40);
-    let causes: Vec<_> = accounting.gaps.iter().map(|gap| (gap.row, gap.cause)).collect();
+    let causes: Vec<_> = accounting
+        .gaps
+        .iter()
+        .map(|gap| (gap.row, gap.cause))
+        .collect();
     assert_eq!(
         causes,
         [
@@ -98,7 +102,10 @@ fn every_missing_sample_has_a_cause() {
             (100, Cause::Device),
         ]
     );
-    assert_eq!((accounting.drive_restarts, accounting.segments.len()), (1, 3));
+    assert_eq!(
+        (accounting.drive_restarts, accounting.segments.len()),
+        (1, 3)
+    );
     let recount = |ticks: &[u64]| {
         let mut recount = Recount::new(&accounting);
         for tick in ticks {
@@ -152,8 +159,14 @@ fn every_start_of_the_drive_is_taken_and_nothing_of_the_one_before() {
         assert!(!ledger.block(&late), "before start {start}");
     }
     let accounting = ledger.into_accounting();
-    assert_eq!((accounting.drive_restarts, accounting.segments.len()), (40, 41));
-    assert_eq!((accounting.totals.received, accounting.totals.dropped), (820, 0));
+    assert_eq!(
+        (accounting.drive_restarts, accounting.segments.len()),
+        (40, 41)
+    );
+    assert_eq!(
+        (accounting.totals.received, accounting.totals.dropped),
+        (820, 0)
+    );
 }
 
 #[test]
@@ -164,5 +177,8 @@ fn a_restart_with_the_same_number_is_one() {
     ledger.subscribed(begin(200, 0, 1));
     assert!(ledger.block(&block(200, 0, 1)));
     let accounting = ledger.into_accounting();
-    assert_eq!((accounting.drive_restarts, accounting.totals.dropped), (1, 0));
+    assert_eq!(
+        (accounting.drive_restarts, accounting.totals.dropped),
+        (1, 0)
+    );
 }

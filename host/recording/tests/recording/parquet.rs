@@ -1,7 +1,8 @@
 //! The Parquet file of a recording.
 
 use crate::support::{
-    check_accounting, is_part, mangled, open, plain, recorded, rows, rows_of, salvaged, sent, sent_of,
+    check_accounting, is_part, mangled, open, plain, recorded, rows, rows_of, salvaged, sent,
+    sent_of,
 };
 use crepitus_pages::recorded::Analysis;
 use crepitus_recording::{Cause, Damage, Format, Recording, Row, parquet_writer};

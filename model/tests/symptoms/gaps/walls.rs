@@ -32,12 +32,14 @@ fn a_wall_that_leaves_and_is_committed_again_does_not_push() {
 
 /// Ends as firm as given, with the leg where both push it, against each other.
 fn between_two_walls(extension_loss: f64) -> (Rig<f64>, EffectSettings, f64) {
-    let walls = |extension_limit_deg, flexion_limit_deg| on!(range_limit: RangeLimitSettings {
-        extension_limit_deg,
-        flexion_limit_deg,
-        extension_loss,
-        ..RangeLimitSettings::default()
-    });
+    let walls = |extension_limit_deg, flexion_limit_deg| {
+        on!(range_limit: RangeLimitSettings {
+            extension_limit_deg,
+            flexion_limit_deg,
+            extension_loss,
+            ..RangeLimitSettings::default()
+        })
+    };
     let mut rig = only::<f64>(walls(10.0, 60.0), 59.9);
     let (mut at_rad, _) = moved(&mut rig, 59.9_f64.to_radians(), 800);
     rig.commit(walls(70.0, 120.0));
@@ -110,11 +112,13 @@ fn a_wall_that_a_commit_softens_gives_the_other_no_push() {
 /// the leg has left it, the new cap holds at once.
 #[test]
 fn a_wall_that_was_left_comes_back_with_its_new_cap() {
-    let wall = |flexion_torque_nm| on!(range_limit: RangeLimitSettings {
-        flexion_limit_deg: 60.0,
-        flexion_torque_nm,
-        ..RangeLimitSettings::default()
-    });
+    let wall = |flexion_torque_nm| {
+        on!(range_limit: RangeLimitSettings {
+            flexion_limit_deg: 60.0,
+            flexion_torque_nm,
+            ..RangeLimitSettings::default()
+        })
+    };
     let mut rig = only::<f64>(wall(4.0), 59.9);
     let mut at_rad = moved(&mut rig, 59.9_f64.to_radians(), 2_000).0;
     let mut go = |rig: &mut Rig<f64>, omega_rad_s: f64| {
