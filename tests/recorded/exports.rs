@@ -120,7 +120,7 @@ fn pandas_polars_and_duckdb_open_the_file() {
                  about = json.loads(m.metadata[b'crepitus'])\n\
                  t = p.read_table('{path}')\n\
                  assert about['columns']['torque_nm'].endswith('N·m')\n\
-                 assert about['accounting']['totals']['received'] == len(t)\n\
+                 assert about['books']['totals']['received'] == len(t)\n\
                  assert about['parameters'][0]['values']['crepitus.static_torque_nm'] > 0\n\
                  assert len(about['comms']['serial']) == 24 and len(about['drive']['serial']) == 24\n\
                  print(len(t), sum(t['count'].to_pylist()), len(t) - t['current_a'].null_count, t['limit'][0])"
