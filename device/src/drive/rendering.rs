@@ -12,7 +12,7 @@ use crepitus_model::render::limits::TorqueLimits;
 use crepitus_model::render::position::Position;
 use crepitus_model::render::{Limit, Pipeline, ShaftEstimate, Shown};
 use crepitus_model::solver::locate::ExactEvents;
-use crepitus_model::{Crepitus, EventKind, Real};
+use crepitus_model::{Crepitus, EventKind, Frozen, Real};
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{LimitReason, TICK_S};
 
@@ -104,6 +104,11 @@ impl Rendering {
         self.apply(plan, self.omega_rad_s);
         exchange.set_settling(true);
         exchange.render_took_plan();
+    }
+
+    /// The stick-slip joint, if there is one.
+    pub fn joint(&self) -> Option<&Frozen<f32, ExactEvents>> {
+        self.stages.symptoms.as_ref().map(Crepitus::joint)
     }
 
     /// The tick that the next result is of. With more results than ticks it is one that is not due

@@ -12,17 +12,16 @@
 //! | to find | look in |
 //! |---|---|
 //! | the lowest and highest value of a time | `envelope.rs` |
-//! | the names of the states in a bin | `states.rs` |
+//! | the names of the states in a bin | [`STATES`] |
 //! | target speeds by name | `target.rs` |
 //! | how well a hand keeps to one | `pace.rs`, `strokes.rs` |
 
 mod envelope;
 mod pace;
-mod states;
 mod strokes;
 mod target;
 
+pub use crepitus_model::render::effects::STATES;
 pub use envelope::{Bin, Bins, Envelope, Marks};
 pub use pace::{Pace, Score, Verdict};
-pub use states::{STATES, StateName, mask};
 pub use target::{Aim, NAMED, Target, TargetError};

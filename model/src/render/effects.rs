@@ -20,6 +20,7 @@ pub mod play;
 pub mod range_limit;
 mod slewed;
 pub mod spasticity;
+mod states;
 pub mod symptom;
 pub mod tank;
 pub mod texture;
@@ -30,6 +31,7 @@ pub use faded::Faded;
 pub use outliving::Outliving;
 pub use phases::{PhaseSpec, Phases};
 pub use slewed::Slewed;
+pub use states::{STATES, StateName};
 pub use together::MOST_SHARE_AT_A_WALL;
 
 use super::input_check::Checked;

@@ -4,7 +4,6 @@
 //! a second: a bin holds the extremes of its samples, so that the shortest spike reaches
 //! the screen, and everything that happened in its time.
 
-use crate::live::states::mask;
 use crepitus_model::render::effects::Phases;
 use crepitus_plant::Extremes;
 use crepitus_protocol::TICKS_PER_S;
@@ -142,7 +141,7 @@ impl Bins {
         let complete = self.open.take_if(|(open, _)| *open < number);
         let (_, bin) = self.open.get_or_insert_with(|| (number, Bin::default()));
         if self.last.0 != row.phases {
-            self.last = (row.phases, mask(row.phases));
+            self.last = (row.phases, row.phases.states());
         }
         bin.torque_nm.add(row.torque_nm);
         bin.model_nm.add(row.model_torque_nm);

@@ -1,6 +1,6 @@
-//! The states that a bin can have: every phase of every effect that is not its rest.
+//! States of the effects: every phase of every effect that is not its rest, a bit each.
 
-use crepitus_model::render::effects::{Phases, SPECS};
+use super::{Phases, SPECS};
 
 /// A state: an effect that is in a phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,11 +11,11 @@ pub struct StateName {
     pub phase: &'static str,
 }
 
-/// All states; the place of one is its bit in a [mask](mask()).
+/// All states; the place of one is its bit in [`Phases::states`].
 pub const STATES: [StateName; COUNT] = named();
 
 const COUNT: usize = count();
-// A mask has 32 bits.
+// The states of a tick have 32 bits.
 const _: () = assert!(COUNT <= 32);
 
 const fn count() -> usize {
@@ -30,6 +30,7 @@ const fn count() -> usize {
     count
 }
 
+#[expect(clippy::indexing_slicing, reason = "at compile time")]
 const fn named() -> [StateName; COUNT] {
     let mut names = [StateName {
         effect: "",
@@ -55,24 +56,26 @@ const fn named() -> [StateName; COUNT] {
     names
 }
 
-/// The states of these phases, a bit each.
-pub fn mask(phases: Phases) -> u32 {
-    if phases == Phases::default() {
-        return 0;
-    }
-    let mut mask = 0;
-    let mut first = 0;
-    for spec in SPECS {
-        let Some(names) = spec.phases.map(|phases| phases.names) else {
-            continue;
-        };
-        let number = u32::from(phases.get(spec));
-        if number > 0 {
-            mask |= 1_u32.unbounded_shl(first + number - 1);
+impl Phases {
+    /// The states of these phases, a bit each.
+    pub fn states(self) -> u32 {
+        if self == Self::default() {
+            return 0;
         }
-        first += u32::try_from(names.len().saturating_sub(1)).unwrap_or(0);
+        let mut states = 0;
+        let mut first = 0;
+        for spec in SPECS {
+            let Some(names) = spec.phases.map(|phases| phases.names) else {
+                continue;
+            };
+            let number = u32::from(self.get(spec));
+            if number > 0 {
+                states |= 1_u32.unbounded_shl(first + number - 1);
+            }
+            first += u32::try_from(names.len().saturating_sub(1)).unwrap_or(0);
+        }
+        states
     }
-    mask
 }
 
 #[cfg(test)]
@@ -81,12 +84,12 @@ mod tests {
 
     #[test]
     fn each_state_has_its_bit() {
-        assert_eq!(mask(Phases::default()), 0);
+        assert_eq!(Phases::default().states(), 0);
         for (place, state) in STATES.iter().enumerate() {
             let phases = Phases::default()
                 .with_named(state.effect, state.phase)
                 .unwrap();
-            assert_eq!(mask(phases), 1 << place, "{state:?}");
+            assert_eq!(phases.states(), 1 << place, "{state:?}");
         }
     }
 
@@ -97,6 +100,6 @@ mod tests {
             .with_named(first.effect, first.phase)
             .and_then(|phases| phases.with_named(last.effect, last.phase))
             .unwrap();
-        assert_eq!(mask(phases).count_ones(), 2);
+        assert_eq!(phases.states().count_ones(), 2);
     }
 }
