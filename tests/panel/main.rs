@@ -4,6 +4,7 @@
 
 mod access;
 mod devices;
+mod hand;
 mod lessons;
 #[path = "../support/panel.rs"]
 mod page;

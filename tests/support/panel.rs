@@ -151,14 +151,14 @@ impl Frame {
         }
     }
 
-    /// A number of a bin: torque, model, speed, angle, low and high each.
+    /// A number of a bin: torque, model, speed, angle, hand, low and high each.
     pub(crate) fn value(&self, bin: u16, place: usize) -> f32 {
-        let at = 40 + usize::from(bin) * 40 + place * 4;
+        let at = 40 + usize::from(bin) * 48 + place * 4;
         f32::from_le_bytes(self.bytes[at..at + 4].try_into().unwrap())
     }
 
     pub(crate) fn states(&self, bin: u16) -> u32 {
-        self.value(bin, 8).to_bits()
+        self.value(bin, 10).to_bits()
     }
 }
 

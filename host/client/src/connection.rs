@@ -14,7 +14,7 @@
 //! | to find | look in |
 //! |---|---|
 //! | names, ports, errors of opening | [`Connection`], [`OpenError`] |
-//! | a device in this process as a transport | [`Simulated`] |
+//! | a device in this process as a transport, the hand on its leg | [`Simulated`], [`HandInput`] |
 //! | real time, in ticks | [`Clock`] |
 //! | identity, status and faults, as text and as JSON | [`device_text`] |
 //! | parameters by name and as JSON | [`parameters`] |
@@ -29,6 +29,7 @@ mod simulated;
 
 pub use clock::Clock;
 pub use connection::{Connection, is_in_this_process, is_port};
+pub use crepitus_virtual_device::HandInput;
 pub use input::is_input;
 pub use open_error::OpenError;
 pub use simulated::{Simulated, emulated};

@@ -24,7 +24,12 @@ const VALUES = [
   "speedHigh",
   "angleLow",
   "angleHigh",
+  // Where a hand wants the leg; NaN without one.
+  "handLow",
+  "handHigh",
 ];
+// Bytes of a bin before its states.
+const REST = 4 * VALUES.length;
 
 function emptyColumns(room) {
   const columns = { t: new Float64Array(room), states: new Uint32Array(room), breaks: new Uint16Array(room) };
@@ -43,12 +48,12 @@ function decode(view, columns, at) {
   for (let i = 0; i < count; i++) {
     const from = HEADER + i * stride;
     columns.t[at + i] = begin + (i + 0.5) * length;
-    for (let k = 0; k < 8; k++) {
+    for (let k = 0; k < VALUES.length; k++) {
       columns[VALUES[k]][at + i] = view.getFloat32(from + 4 * k, true) * (k < 4 ? 1 : DEGREES);
     }
-    columns.states[at + i] = view.getUint32(from + 32, true);
-    columns.breaks[at + i] = view.getUint16(from + 36, true);
-    columns.marks[at + i] = view.getUint16(from + 38, true);
+    columns.states[at + i] = view.getUint32(from + REST, true);
+    columns.breaks[at + i] = view.getUint16(from + REST + 4, true);
+    columns.marks[at + i] = view.getUint16(from + REST + 6, true);
   }
   return count;
 }

@@ -3,6 +3,7 @@
 
 import { storedToken, storeToken } from "./storage.js";
 
+const VERSION = 2;
 const KIND_TRACE = 2;
 // The server sends something every 100 ms. Without a message for so long the page no longer
 // knows what the device does.
@@ -53,6 +54,11 @@ export function ask(what, more = {}) {
   });
 }
 
+/** Says to which angle this page's hand moves the leg, in degrees, or that it lets go. There is no reply. */
+export function moveHand(angle, holds) {
+  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ hand: angle, holds }));
+}
+
 function settle(id, outcome, value) {
   const request = waiting.get(id);
   waiting.delete(id);
@@ -63,7 +69,7 @@ function settle(id, outcome, value) {
 // the server disarms when answers stay out.
 function receiveFrame(data) {
   const view = new DataView(data);
-  if (data.byteLength < 40 || view.getUint8(0) !== 1) return;
+  if (data.byteLength < 40 || view.getUint8(0) !== VERSION) return;
   const id = view.getUint32(4, true);
   if (view.getUint8(1) === KIND_TRACE) return settle(id, "resolve", view);
   socket.send(`{"seen":${id}}`);

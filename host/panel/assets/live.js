@@ -142,7 +142,8 @@ function paint(now) {
     charts.masked = bins.masked;
     if (began - lateAt < CAREFUL_MS) charts.draw(to - seconds, to, nextPane++);
     else charts.draw(to - seconds, to);
-    turnLeg(isStale ? NaN : middle(columns.angleLow[end - 1], columns.angleHigh[end - 1]));
+    const { angle, hand } = legNow();
+    turnLeg(angle, hand);
   }
   showWords(now);
   const arrived = bins.arrived;
@@ -192,6 +193,17 @@ function showCounters() {
     setText(host.children[i].children[0], text(`counters.${key}`));
     setText(host.children[i].children[1], value);
   });
+}
+
+/** The newest angles of leg and hand, in degrees; NaN where there are none. */
+export function legNow() {
+  const { columns, begin, end } = bins;
+  if (isStale || end <= begin) return { angle: NaN, hand: NaN };
+  const last = end - 1;
+  return {
+    angle: middle(columns.angleLow[last], columns.angleHigh[last]),
+    hand: middle(columns.handLow[last], columns.handHigh[last]),
+  };
 }
 
 /** The end of the live time line, s. */

@@ -3,6 +3,7 @@
 import { connect, on } from "./connection.js";
 import { startControl } from "./control.js";
 import { byId } from "./dom.js";
+import { startGuide } from "./guide.js";
 import { startKnee } from "./knee.js";
 import { startLesson } from "./lesson.js";
 import { startLive } from "./live.js";
@@ -27,6 +28,7 @@ await startStrings(byId("language"));
 startTabs();
 startControl();
 startLive();
+startGuide();
 startTarget();
 startNotes();
 startKnee();

@@ -33,6 +33,8 @@ assets![
     SCRIPT "dialogs.js",
     SCRIPT "dom.js",
     SCRIPT "drawer.js",
+    SCRIPT "guide.js",
+    SCRIPT "hand.js",
     SCRIPT "knee.js",
     SCRIPT "lateness.js",
     SCRIPT "leg.js",

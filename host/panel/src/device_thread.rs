@@ -13,8 +13,10 @@
 //! | recordings | `device_thread/recording.rs` |
 //! | notes | `device_thread/notes.rs` |
 //! | the target of a hand, and its score | `device_thread/target.rs` |
+//! | the hand on a simulated leg | `device_thread/hand.rs` |
 //! | status as a message | `device_thread/status.rs` |
 
+mod hand;
 mod knee;
 mod lessons;
 mod notes;
@@ -31,11 +33,13 @@ use crate::live::{Envelope, Pace};
 use crate::request::Request;
 use crate::shared::{Latest, Order, Outcome, Shared};
 use axum::extract::ws::Utf8Bytes;
+use crepitus_client::connection::HandInput;
 use crepitus_client::{Client, Error, Event, Transport};
 use crepitus_protocol::telemetry::{Block, SampleFlags};
 use crepitus_protocol::{Revision, Session, TICKS_PER_S, Values};
 use crepitus_recording::Samples;
 use crepitus_scene::preset::Preset;
+use hand::Hand;
 use lessons::Held;
 use notes::Note;
 use recording::Recorded;
@@ -106,6 +110,8 @@ pub(crate) struct DeviceThread<'p, T> {
     /// The preset applied last, and the revision that it made.
     preset: Option<(String, Revision)>,
     envelope: Envelope,
+    /// Hand on the leg of a simulated device.
+    hand: Option<Hand>,
     /// Time of the newest sample, s.
     now_s: f64,
     missing: u64,
@@ -141,6 +147,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         shared: Arc<Shared>,
         inbox: Receiver<Order>,
         sessions: Option<PathBuf>,
+        hand: Option<HandInput>,
     ) -> Result<Self, Error> {
         let (committed, values) = client.parameters()?;
         client.subscribe()?;
@@ -158,6 +165,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             committed,
             preset: None,
             envelope: Envelope::new(ROWS_PER_BIN),
+            hand: hand.map(Hand::new),
             now_s: 0.0,
             missing: 0,
             frame_number: 0,
@@ -223,6 +231,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         } else {
             self.pump();
         }
+        self.move_hand();
         self.check_files();
         self.notice_torque_end();
         if self.hides != self.is_hidden() {
@@ -324,6 +333,12 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             if let Some(pace) = &mut self.pace {
                 pace.take(&row);
             }
+            if let Some(hand) = &mut self.hand {
+                hand.see(&row);
+            }
+        }
+        if let Some(angle_rad) = self.hand.as_ref().and_then(Hand::angle_rad) {
+            self.envelope.hold(angle_rad);
         }
     }
 

@@ -2,25 +2,25 @@
 //!
 //! ```text
 //! header   version u8 ‖ kind u8 ‖ bins u16 ‖ number u32 ‖ unix ms f64 ‖ begin s f64 ‖ bin s f64 ‖ missing u32 ‖ masks u32
-//! bin      torque, model, speed, angle: low f32 ‖ high f32 each ‖ states u32 ‖ breaks u16 ‖ marks u16
+//! bin      torque, model, speed, angle, hand: low f32 ‖ high f32 each ‖ states u32 ‖ breaks u16 ‖ marks u16
 //! ```
 //!
-//! All little endian; N·m, rad/s, rad; NaN without a value. `number` counts the frames of
-//! the live view, which the page answers; in a trace it is the request's.
+//! All little endian; N·m, rad/s, rad; NaN without a value. `hand` is where a hand wants the leg.
+//! `number` counts the frames of the live view, which the page answers; in a trace it is the request's.
 
 use crate::live::Bin;
 use axum::body::Bytes;
 use crepitus_plant::Extremes;
 
 /// Version of the layout.
-const VERSION: u8 = 1;
+const VERSION: u8 = 2;
 
 /// Bytes of the header.
 #[cfg(test)]
 pub(crate) const HEADER: usize = 40;
 
 /// Bytes of a bin.
-pub(crate) const BIN: usize = 40;
+pub(crate) const BIN: usize = 48;
 
 /// Kind of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,6 +91,7 @@ fn append(out: &mut Vec<u8>, bin: &Bin, masks: Masks) {
         hidden(bin.model_nm),
         bin.speed_rad_s,
         bin.angle_rad,
+        bin.hand_rad,
     ] {
         let ends = if shown.is_empty() {
             [f32::NAN; 2]
@@ -137,6 +138,7 @@ mod tests {
             angle_rad: 4.0,
             ..Row::default()
         });
+        envelope.hold(4.5);
         Bin {
             states: 5,
             breaks: 6,
@@ -148,13 +150,14 @@ mod tests {
     fn a_frame_is_its_header_and_its_bins() {
         let bytes = frame(&header(Masks::default()), &[a_bin(), a_bin()]);
         assert_eq!(bytes.len(), HEADER + 2 * BIN);
-        assert_eq!(bytes[..8], [1, 1, 2, 0, 7, 0, 0, 0]);
+        assert_eq!(bytes[..8], [2, 1, 2, 0, 7, 0, 0, 0]);
         let float = |at: usize| f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
-        let values: Vec<_> = (0..8).map(|n| float(HEADER + 4 * n)).collect();
-        assert_eq!(values, [1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0]);
+        let values: Vec<_> = (0..10).map(|n| float(HEADER + 4 * n)).collect();
+        let expected = [1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0, 4.5, 4.5];
+        assert_eq!(values, expected);
         // The object sticks: mark 1.
         let rest = [5, 0, 0, 0, 6, 0, 1, 0];
-        assert_eq!(bytes[HEADER + 32..HEADER + 40], rest);
+        assert_eq!(bytes[HEADER + 40..HEADER + BIN], rest);
     }
 
     #[test]
@@ -175,7 +178,7 @@ mod tests {
             } else {
                 [5, 0, 0, 0, 6, 0, 1, 0]
             };
-            assert_eq!(bytes[HEADER + 32..], rest);
+            assert_eq!(bytes[HEADER + 40..], rest);
             assert_eq!(bytes[36], u8::from(torque) | u8::from(states) << 1);
         }
     }

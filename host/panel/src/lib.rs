@@ -17,6 +17,7 @@
 //! | what is served, and to whom | `server.rs`, `guard.rs`, `pending.rs`, `tokens.rs`, `tickets.rs` |
 //! | the connection of a page | `socket.rs`, `request.rs`, `control.rs` |
 //! | what is done with the device | `device_thread.rs` |
+//! | requests of a page's hand on a simulated leg | `hand.rs` |
 //! | who turns torque off when a page hangs | `watchdog.rs` |
 //! | the layout of frames | `frame.rs` |
 //! | the tables that a page shows | `hello.rs`, `book.rs` |
@@ -34,6 +35,7 @@ mod control;
 mod device_thread;
 mod frame;
 mod guard;
+mod hand;
 mod hello;
 pub mod lesson;
 pub mod live;

@@ -3,12 +3,14 @@
 use crate::archive::Archive;
 use crate::device_thread::{DeviceThread, Program};
 use crate::guard::Names;
+use crate::hand;
 use crate::hello;
 use crate::panel_error::PanelError;
 use crate::pending::Pending;
 use crate::server;
 use crate::shared::{Order, Shared};
 use crate::tokens::Tokens;
+use crepitus_client::connection::HandInput;
 use crepitus_client::{Client, Error, Transport};
 use serde_json::{Value, json};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
@@ -40,6 +42,8 @@ pub enum Source {
         name: String,
         /// Serial number of the device.
         serial: String,
+        /// Hand that moves its leg, if it is a simulated one.
+        hand: Option<HandInput>,
     },
     /// Recordings only.
     Replay,
@@ -61,6 +65,7 @@ pub struct Panel {
     shared: Arc<Shared>,
     inbox: Receiver<Order>,
     sessions: Option<PathBuf>,
+    hand: Option<HandInput>,
     links: Links,
 }
 
@@ -117,6 +122,10 @@ impl Panel {
             shared,
             inbox,
             sessions: settings.sessions,
+            hand: match source {
+                Source::Device { hand, .. } => hand.clone(),
+                Source::Replay => None,
+            },
             links: Links {
                 teacher: format!("{scheme}://{first}/#{}", tokens.teacher),
                 viewer: format!("{scheme}://{first}/#{}", tokens.viewer),
@@ -143,9 +152,10 @@ impl Panel {
             shared,
             inbox,
             sessions,
+            hand,
             ..
         } = self;
-        DeviceThread::new(client, program, shared, inbox, sessions)?.run()
+        DeviceThread::new(client, program, shared, inbox, sessions, hand)?.run()
     }
 
     /// Shows recordings until the program is asked to end.
@@ -156,9 +166,12 @@ impl Panel {
 
 fn described(source: &Source) -> Value {
     match source {
-        Source::Device { name, serial } => {
-            json!({ "kind": "device", "name": name, "serial": serial })
-        }
+        Source::Device { name, serial, hand } => json!({
+            "kind": "device",
+            "name": name,
+            "serial": serial,
+            "hand": hand.as_ref().map(|_| hand::reach()),
+        }),
         Source::Replay => json!({ "kind": "replay" }),
     }
 }

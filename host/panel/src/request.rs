@@ -1,9 +1,9 @@
-//! Requests that a page may make, and the right that each needs.
+//! Messages of a page: requests, and the right that each needs; answers to frames; its hand.
 
 use serde::Deserialize;
 use serde_json::Value;
 
-/// A message of a page: a request with its number, or the answer to a frame.
+/// A message of a page.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
 pub(crate) enum Message {
@@ -22,6 +22,14 @@ pub(crate) enum Message {
         /// Requested action.
         #[serde(flatten)]
         request: Request,
+    },
+    /// The angle to which the page's hand moves the leg, °, or that it lets go. Without a reply; of the page in
+    /// control alone.
+    Hand {
+        /// Angle of the knee.
+        hand: f64,
+        /// Whether the hand holds the leg.
+        holds: bool,
     },
 }
 
@@ -230,6 +238,7 @@ mod tests {
         match serde_json::from_str(text) {
             Ok(Message::Request { request, .. }) => Ok(request),
             Ok(Message::Seen { .. }) => Err("an answer".to_owned()),
+            Ok(Message::Hand { .. }) => Err("a hand".to_owned()),
             Err(error) => Err(error.to_string()),
         }
     }
@@ -264,6 +273,10 @@ mod tests {
             serde_json::from_str(r#"{"seen":4}"#),
             Ok(Message::Seen { seen: 4 })
         ));
+        assert!(matches!(
+            serde_json::from_str(r#"{"hand":-12.5,"holds":true}"#),
+            Ok(Message::Hand { hand, holds: true }) if hand == -12.5
+        ));
     }
 
     #[test]
@@ -277,6 +290,11 @@ mod tests {
             r#"{"id":-1,"do":"stop"}"#,
             r#"{"id":1,"do":"set","changes":[[300,1]]}"#,
             r#"{"seen":-1}"#,
+            r#"{"hand":1e999,"holds":true}"#,
+            r#"{"hand":NaN,"holds":true}"#,
+            r#"{"hand":null,"holds":true}"#,
+            r#"{"hand":"1","holds":true}"#,
+            r#"{"hand":1}"#,
         ] {
             assert!(request(text).is_err(), "{text}");
         }

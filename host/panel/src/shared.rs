@@ -4,11 +4,12 @@
 //!  device_thread ── frames, latest ──> server ──> pages
 //!    ↑  ↑                         │
 //!    │  └──────── orders ─────────┤
-//!    └──────── watchdog ──────────┘        archive <── questions about recordings
+//!    └───── watchdog, hand ───────┘        archive <── questions about recordings
 //! ```
 
 use crate::archive::Question;
 use crate::control::{Control, Page};
+use crate::hand::HandRequests;
 use crate::pending::Pending;
 use crate::request::Request;
 use crate::tickets::Tickets;
@@ -73,6 +74,8 @@ pub(crate) struct Shared {
     pub(crate) latest: watch::Sender<Latest>,
     pub(crate) watchdog: PageWatchdog,
     pub(crate) control: Control,
+    /// Angles to which the page in control moves the leg.
+    pub(crate) hand_requests: HandRequests,
     /// Number of stops that pages have queued.
     pub(crate) stops: AtomicU64,
     pub(crate) tokens: Tokens,
@@ -99,6 +102,7 @@ impl Shared {
             latest: watch::channel(Latest::default()).0,
             watchdog: PageWatchdog::new(),
             control: Control::new(),
+            hand_requests: HandRequests::default(),
             stops: AtomicU64::new(0),
             tokens,
             tickets: Tickets::default(),

@@ -6,6 +6,7 @@
 use crate::archive::{ArchiveAnswer, Asked, Question};
 use crate::book;
 use crate::control::{Holder, Page};
+use crate::hand::HandRequest;
 use crate::request::{Message as FromPage, Request, Right};
 use crate::shared::{Latest, Outcome, Shared, gone};
 use crate::tokens::Role;
@@ -193,6 +194,15 @@ async fn read(
                     && !matches!(pending.join_next().await, Some(Ok(Ok(()))))
                 {
                     return;
+                }
+            }
+            Ok(FromPage::Hand { hand, holds }) => {
+                if shared.control.is_held_by(page) {
+                    shared.hand_requests.put(HandRequest {
+                        page,
+                        angle_deg: hand,
+                        holds,
+                    });
                 }
             }
             Err(_) => {

@@ -1,211 +1,296 @@
-//! A hand that a person moves by pointer, touch or keys.
-//!
-//! A spring and a damper pull the leg to where the hand wants to be, so that resistance is seen as lag:
+//! The hand of a person who moves a leg on a screen.
 //!
 //! ```text
-//! torque = k·(φ_hand − φ) + b·(Ω_hand − Ω)      within ±limit
+//! pointer, keys ── targets, 30 to 120 a second ──> HandPath ── φ_hand, Ω_hand ──> Hand ── torque ──> leg
 //! ```
+//!
+//! **[Law](Hand)**: a spring and a damper from the leg to the hand, up to a limit.
+//!
+//! ```text
+//! torque = clamp(k·(φ_hand − φ) + b·(Ω_hand − Ω), ±limit)
+//! ```
+//!
+//! So a resistance shows as a lag of the leg: 1 N·m as 1.4°.
 //!
 //! | number | value | source |
 //! |---|---|---|
-//! | stiffness k | 60 N·m/rad: 490 N/m at a lever of 0.35 m | estimate: an arm that pulls; the plant's has 135 N/m |
-//! | damping b | 10 N·m·s/rad | nearly critical for the leg of 70 kg and 1.75 m with an arm |
-//! | limit | 40 N·m: 114 N at that lever | estimate |
+//! | k | 40 N·m/rad | estimate: 327 N/m at 0.35 m, as a light grip; stiffer, one would not see the lag |
+//! | b | 9 N·m·s/rad | estimate: a leg with hand and brace, 0.57 kg·m², does not ring |
+//! | limit | 25 N·m | estimate: 71 N at 0.35 m, one arm; several times what a brace renders |
+//! | inertia | 0.0679 kg·m² | the plant's arm: 0.554 kg at 0.35 m (Sci. Rep. srep18004, fig. 3) |
 //!
-//! A display gives a target 30 to 120 times a second, never evenly. [`HandPath`] makes a path of it for a
-//! device of 20 kHz: the target at a limited speed, then two equal lags, which are one critically damped
-//! follower. Each is a weighted mean of what came before, so the path never leaves the range of its
-//! targets, overshoots none that stays, and is never faster than the limit; its velocity has no jumps.
+//! **[Path](HandPath)**: each target is approached within a thirtieth of a second, at one speed and at most at
+//! [`MOST_RAD_S`]; two equal lags round the corners. Behind a target that moves steadily the distance is then
+//! the same whenever the next one comes, so the path is as steady: an uneven rate of a display does not
+//! show. A path is always a mean of earlier targets, so it never goes beyond them.
 
-use crepitus_model::Real;
-use crepitus_protocol::TICK_S;
+/// Highest speed of a path, rad/s: 275 °/s. A leg that catches up is up to a seventh faster, and a device
+/// lets go at 328 °/s.
+pub const MOST_RAD_S: f64 = 4.8;
 
-/// Impedance of a hand.
+/// Time in which a target is approached, s: the interval of the slowest display.
+pub const APPROACH_S: f64 = 1.0 / 30.0;
+
+/// Time constant of each of the two lags, s.
+pub const CORNER_S: f64 = 6e-3;
+
+/// Law of a hand that holds a leg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hand {
-    /// Stiffness k, N·m/rad.
+    /// Stiffness k about the knee, N·m/rad.
     pub stiffness_nm_per_rad: f64,
-    /// Damping b, N·m·s/rad.
+    /// Damping b about the knee, N·m·s/rad.
     pub damping_nms_per_rad: f64,
-    /// Largest torque, N·m.
+    /// Largest torque of spring and damper, N·m.
     pub limit_nm: f64,
+    /// Inertia of the arm, which moves with the leg, kg·m².
+    pub inertia_kg_m2: f64,
+}
+
+impl Default for Hand {
+    fn default() -> Self {
+        Self {
+            stiffness_nm_per_rad: 40.0,
+            damping_nms_per_rad: 9.0,
+            limit_nm: 25.0,
+            inertia_kg_m2: 0.0679,
+        }
+    }
 }
 
 impl Hand {
-    /// The hand that a person moves.
-    pub const GUIDED: Self = Self {
-        stiffness_nm_per_rad: 60.0,
-        damping_nms_per_rad: 10.0,
-        limit_nm: 40.0,
-    };
-
-    /// Torque on a leg that is `behind_rad` behind the hand and `slower_rad_s` slower, N·m; positive
-    /// flexes the knee.
+    /// Torque on a leg that is behind the hand by this angle, rad, and by this speed, rad/s: N·m, in
+    /// the direction of growing angle.
     pub fn torque_nm(&self, behind_rad: f64, slower_rad_s: f64) -> f64 {
-        (self.stiffness_nm_per_rad * behind_rad + self.damping_nms_per_rad * slower_rad_s)
-            .within(self.limit_nm)
+        let torque_nm =
+            self.stiffness_nm_per_rad * behind_rad + self.damping_nms_per_rad * slower_rad_s;
+        torque_nm.max(-self.limit_nm).min(self.limit_nm)
     }
 }
 
-/// Largest speed of a path, rad/s: 258 deg/s. A leg that is thrown gets a fifth faster, and a brace
-/// disarms from 328 deg/s on.
-pub const FASTEST_RAD_S: f64 = 4.5;
+/// Angle and speed of a hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HandState {
+    /// Angle, rad.
+    pub angle_rad: f64,
+    /// Speed, rad/s: the mean one of the last step.
+    pub omega_rad_s: f64,
+}
 
-/// Rate of each of the two lags, 1/s: at constant speed a path is 40 ms late.
-const FOLLOW_PER_S: f64 = 50.0;
-
-/// Share of a difference that a lag makes up for in a tick.
-const SHARE: f64 = FOLLOW_PER_S * TICK_S;
-
-/// Path of a hand, tick by tick, from targets that come now and then.
+/// Path of a hand along the targets that a display sends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandPath {
-    /// Latest target.
     target_rad: f64,
-    /// The target at a limited speed.
-    led_rad: f64,
-    /// Output of the first lag.
-    lagged_rad: f64,
+    /// Point that goes straight to the target, and its speed.
+    goal_rad: f64,
+    goal_rad_s: f64,
+    /// The goal behind one lag, and behind both.
+    first_rad: f64,
     angle_rad: f64,
-    omega_rad_s: f64,
 }
 
 impl HandPath {
-    /// A hand at rest.
-    pub fn at(angle_rad: f64) -> Self {
+    /// A hand that takes a leg here, at the speed that the leg has, and holds it.
+    pub fn taking(leg: HandState) -> Self {
+        let first_rad = leg.angle_rad + CORNER_S * leg.omega_rad_s;
         Self {
-            target_rad: angle_rad,
-            led_rad: angle_rad,
-            lagged_rad: angle_rad,
-            angle_rad,
-            omega_rad_s: 0.0,
+            target_rad: first_rad,
+            goal_rad: first_rad,
+            goal_rad_s: 0.0,
+            first_rad,
+            angle_rad: leg.angle_rad,
         }
     }
 
-    /// Sets where the hand wants to be from now on. Ignores what is no number.
-    pub fn turn_to(&mut self, target_rad: f64) {
-        if target_rad.is_finite() {
-            self.target_rad = target_rad;
+    /// Sets the angle to which the hand goes from now on, rad. One that is no number is ignored.
+    pub fn aim(&mut self, target_rad: f64) {
+        if !target_rad.is_finite() {
+            return;
         }
+        self.target_rad = target_rad;
+        let speed = (target_rad - self.goal_rad) / APPROACH_S;
+        self.goal_rad_s = speed.clamp(-MOST_RAD_S, MOST_RAD_S);
     }
 
-    /// One tick.
-    pub fn advance(&mut self) {
-        self.led_rad += (self.target_rad - self.led_rad).within(FASTEST_RAD_S * TICK_S);
-        self.lagged_rad += SHARE * (self.led_rad - self.lagged_rad);
-        self.omega_rad_s = FOLLOW_PER_S * (self.lagged_rad - self.angle_rad);
-        self.angle_rad += TICK_S * self.omega_rad_s;
+    /// Goes on for a step of `step_s`, s.
+    pub fn advance(&mut self, step_s: f64) -> HandState {
+        let left_rad = self.target_rad - self.goal_rad;
+        let stride_rad = self.goal_rad_s * step_s;
+        self.goal_rad = if stride_rad.abs() < left_rad.abs() {
+            self.goal_rad + stride_rad
+        } else {
+            self.target_rad
+        };
+        let share = step_s / (CORNER_S + step_s);
+        self.first_rad += share * (self.goal_rad - self.first_rad);
+        self.angle_rad += share * (self.first_rad - self.angle_rad);
+        self.state()
     }
 
-    /// Angle of the hand, rad.
-    pub fn angle_rad(&self) -> f64 {
-        self.angle_rad
-    }
-
-    /// Velocity of the hand, rad/s.
-    pub fn omega_rad_s(&self) -> f64 {
-        self.omega_rad_s
+    /// Angle and speed now.
+    pub fn state(&self) -> HandState {
+        HandState {
+            angle_rad: self.angle_rad,
+            omega_rad_s: (self.first_rad - self.angle_rad) / CORNER_S,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fastrand::Rng;
 
-    #[test]
-    fn the_hand_pulls_the_leg_after_it_as_hard_as_it_can() {
-        let hand = Hand::GUIDED;
-        assert_eq!(hand.torque_nm(0.0, 0.0), 0.0);
-        assert_eq!(hand.torque_nm(0.125, 0.0), 7.5);
-        assert_eq!(hand.torque_nm(0.125, -1.0), -2.5);
-        assert_eq!(hand.torque_nm(2.0, 0.0), hand.limit_nm);
-        assert_eq!(hand.torque_nm(-1.0, -5.0), -hand.limit_nm);
+    const TICK_S: f64 = 5e-5;
+    /// Ticks between two pictures at 120 and at 30 Hz.
+    const FEWEST: u32 = 167;
+    const MOST: u32 = 666;
+
+    fn at(angle_rad: f64) -> HandPath {
+        HandPath::taking(HandState {
+            angle_rad,
+            omega_rad_s: 0.0,
+        })
     }
 
-    /// Random targets at random times, as fast as no display and as slow as no display.
     #[test]
-    fn a_path_keeps_to_its_targets_and_to_its_speed_without_a_jump() {
-        let mut rng = fastrand::Rng::with_seed(55);
-        // Both lags change at most as fast as their input.
-        let most_change = 2.0 * FOLLOW_PER_S * FASTEST_RAD_S * TICK_S;
-        let rounding = 1e-9;
-        let mut fastest = 0.0_f64;
-        for _ in 0..20 {
-            let mut path = HandPath::at(0.3);
-            let (mut low, mut high) = (0.3_f64, 0.3_f64);
-            for _ in 0..60 {
-                let target = rng.f64() * 2.4 - 0.2;
-                (low, high) = (low.min(target), high.max(target));
-                path.turn_to(target);
-                for _ in 0..rng.u32(20..900) {
-                    let before = path;
-                    path.advance();
-                    let inside = low - rounding..=high + rounding;
-                    assert!(inside.contains(&path.angle_rad), "{path:?}");
-                    let change = (path.omega_rad_s - before.omega_rad_s).abs();
-                    assert!(change <= most_change + rounding, "{change}");
-                    let moved = (path.angle_rad - before.angle_rad) / TICK_S;
-                    assert!((moved - path.omega_rad_s).abs() < 1e-6);
-                    fastest = fastest.max(path.omega_rad_s.abs());
+    fn the_law_is_a_spring_and_a_damper_up_to_a_limit() {
+        let hand = Hand::default();
+        assert_eq!(hand.torque_nm(0.1, 0.0), 4.0);
+        assert_eq!(hand.torque_nm(0.1, -0.5), -0.5);
+        assert_eq!(hand.torque_nm(3.0, 0.0), 25.0);
+        assert_eq!(hand.torque_nm(0.0, -3.0), -25.0);
+        // 1 N·m is 1.4° of lag.
+        let lag_deg = (1.0 / hand.stiffness_nm_per_rad).to_degrees();
+        assert!((lag_deg - 1.4).abs() < 0.05, "{lag_deg}");
+    }
+
+    #[test]
+    fn a_hand_without_a_target_stays() {
+        let mut path = at(0.7);
+        for _ in 0..100 {
+            assert_eq!(path.advance(TICK_S).angle_rad, 0.7);
+        }
+        path.aim(f64::NAN);
+        path.aim(f64::INFINITY);
+        assert_eq!(path.advance(TICK_S).angle_rad, 0.7);
+    }
+
+    #[test]
+    fn a_step_is_gone_without_overshoot_at_the_highest_speed() {
+        let mut path = at(0.2);
+        path.aim(1.4);
+        let (mut before, mut fastest) = (path.state(), 0.0_f64);
+        for _ in 0..20_000 {
+            let now = path.advance(TICK_S);
+            assert!(now.omega_rad_s >= 0.0 && now.angle_rad <= 1.4, "{now:?}");
+            assert!(now.angle_rad >= before.angle_rad);
+            fastest = fastest.max(now.omega_rad_s);
+            before = now;
+        }
+        assert!((before.angle_rad - 1.4).abs() < 1e-9, "{before:?}");
+        assert!((fastest / MOST_RAD_S - 1.0).abs() < 1e-9, "{fastest}");
+    }
+
+    #[test]
+    fn whatever_is_aimed_at_angle_and_speed_are_continuous_and_bounded() {
+        let mut rng = Rng::with_seed(7);
+        let mut path = at(0.0);
+        let (mut before, mut low, mut high) = (path.state(), 0.0_f64, 0.0_f64);
+        for _ in 0..400 {
+            let target = 4.0 * rng.f64() - 2.0;
+            (low, high) = (low.min(target), high.max(target));
+            path.aim(target);
+            for _ in 0..rng.u32(1..2_000) {
+                let now = path.advance(TICK_S);
+                let moved = now.angle_rad - before.angle_rad - TICK_S * now.omega_rad_s;
+                assert!(moved.abs() < 1e-12, "{moved}");
+                assert!(now.omega_rad_s.abs() <= MOST_RAD_S * (1.0 + 1e-9));
+                // Both lags are fed with speeds up to the highest.
+                let change = (now.omega_rad_s - before.omega_rad_s).abs();
+                let most = 2.0 * MOST_RAD_S * TICK_S / CORNER_S;
+                assert!(change <= most * (1.0 + 1e-9), "{change}");
+                let within = low - 1e-12..=high + 1e-12;
+                assert!(within.contains(&now.angle_rad), "{now:?}");
+                before = now;
+            }
+        }
+    }
+
+    /// Lets a path follow a pointer of steady speed from 0 rad; returns the time that has passed, s.
+    fn follow(path: &mut HandPath, rng: &mut Rng, speed: f64, ticks: u32) -> f64 {
+        let (mut tick, mut next) = (0_u32, 0_u32);
+        while tick < ticks {
+            if tick == next {
+                path.aim(speed * f64::from(tick) * TICK_S);
+                next += rng.u32(FEWEST..=MOST);
+            }
+            path.advance(TICK_S);
+            tick += 1;
+        }
+        f64::from(tick) * TICK_S
+    }
+
+    #[test]
+    fn an_uneven_rate_of_30_to_120_pictures_a_second_does_not_show() {
+        let mut rng = Rng::with_seed(11);
+        for speed in [0.3, 1.0, -4.0] {
+            let mut path = at(0.0);
+            let mut time_s = follow(&mut path, &mut rng, speed, 30_000);
+            let mut next = 0;
+            for tick in 0..20_000 {
+                if tick == next {
+                    path.aim(speed * time_s);
+                    next += rng.u32(FEWEST..=MOST);
                 }
+                let now = path.advance(TICK_S);
+                time_s += TICK_S;
+                let off = now.omega_rad_s / speed - 1.0;
+                assert!(off.abs() < 1e-6, "{off} after {time_s} s");
+                let lag_s = time_s - now.angle_rad / speed;
+                let known = APPROACH_S + 2.0 * CORNER_S;
+                assert!((lag_s - known).abs() < 1e-4, "{lag_s}");
             }
-        }
-        // It comes close to the limit, and never beyond.
-        let range = 0.9 * FASTEST_RAD_S..=FASTEST_RAD_S + rounding;
-        assert!(range.contains(&fastest), "{fastest}");
-    }
-
-    #[test]
-    fn a_step_is_followed_without_overshoot_and_reached() {
-        for target in [1.0, -0.4, 2.2] {
-            let mut path = HandPath::at(0.0);
-            path.turn_to(target);
-            let mut before = 0.0;
-            for _ in 0..20_000 {
-                path.advance();
-                let share = path.angle_rad / target;
-                assert!(share >= before - 1e-12 && share <= 1.0 + 1e-12, "{share}");
-                before = share;
-            }
-            assert!((path.angle_rad - target).abs() < 1e-9);
-            assert!(path.omega_rad_s.abs() < 1e-9);
-        }
-    }
-
-    /// Targets 60 and 30 times a second, of a pointer at 2 rad/s.
-    #[test]
-    fn a_display_is_made_smooth_and_40_ms_late() {
-        for (ticks, ripple) in [(333, 0.035), (667, 0.12)] {
-            let mut path = HandPath::at(0.0);
-            let mut tick = 0.0;
-            let mut late_s = 0.0;
-            for frame in 0..80 {
-                path.turn_to(2.0 * tick * TICK_S);
-                for _ in 0..ticks {
-                    path.advance();
-                    tick += 1.0;
-                    if frame >= 40 {
-                        let off = path.omega_rad_s / 2.0 - 1.0;
-                        assert!(off.abs() < ripple, "{off}");
-                        late_s += tick * TICK_S - path.angle_rad / 2.0;
-                    }
-                }
-            }
-            let frame_s = f64::from(ticks) * TICK_S;
-            let mean_s = late_s / f64::from(40 * ticks);
-            // On average a target is half a frame old, and is led to at the largest speed.
-            let expected_s = 0.04 + frame_s * (0.5 + 0.5 * 2.0 / FASTEST_RAD_S);
-            assert!((mean_s - expected_s).abs() < 2e-3, "{mean_s}");
         }
     }
 
     #[test]
-    fn what_is_no_number_is_no_target() {
-        let mut path = HandPath::at(0.5);
-        for target in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            path.turn_to(target);
-            path.advance();
+    fn after_half_a_second_without_a_target_the_hand_stands_still_and_goes_on_smoothly() {
+        let mut path = at(0.0);
+        follow(&mut path, &mut Rng::with_seed(3), 2.0, 10_000);
+        let last_rad = path.target_rad;
+        let mut before = path.state();
+        for _ in 0..10_000 {
+            let now = path.advance(TICK_S);
+            assert!(now.omega_rad_s >= -1e-9 && now.angle_rad <= last_rad + 1e-9);
+            before = now;
         }
-        assert_eq!((path.angle_rad(), path.omega_rad_s()), (0.5, 0.0));
+        assert!((before.angle_rad - last_rad).abs() < 1e-9);
+        assert!(before.omega_rad_s.abs() < 1e-9);
+        path.aim(last_rad + 1.0);
+        for _ in 0..10_000 {
+            let now = path.advance(TICK_S);
+            assert!((now.omega_rad_s - before.omega_rad_s).abs() < 0.081);
+            assert!((-1e-9..=MOST_RAD_S + 1e-9).contains(&now.omega_rad_s));
+            before = now;
+        }
+        assert!((before.angle_rad - last_rad - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_leg_in_motion_is_taken_with_its_speed() {
+        let leg = HandState {
+            angle_rad: 0.5,
+            omega_rad_s: -2.0,
+        };
+        let mut path = HandPath::taking(leg);
+        let begun = path.state();
+        assert!((begun.angle_rad - 0.5).abs() < 1e-12);
+        assert!((begun.omega_rad_s + 2.0).abs() < 1e-9);
+        for _ in 0..4_000 {
+            path.advance(TICK_S);
+        }
+        // 12 mrad further: both lags have run out.
+        assert!((path.state().angle_rad - 0.488).abs() < 1e-9);
     }
 }

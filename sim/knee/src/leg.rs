@@ -1,13 +1,16 @@
 //! The leg of a page: leg and foot about the knee, with the hand's arm while it is held.
 //!
 //! ```text
-//! J·Ω̇ = hand − resistance of the knee − B·Ω       held: the hand bears the weight
-//! J·Ω̇ = W·cos φ − resistance − B·Ω                let go, sitting: it hangs at 90°
+//! J·Ω̇ = hand + swing − resistance of the knee − B·Ω       held; swing = clamp(J·Ω̇_hand, ±limit)
+//! J·Ω̇ = W·cos φ − resistance − B·Ω                        let go, sitting: it hangs at 90°
 //! ```
 //!
-//! The numbers are those of the plant's `limb` and `hand` at their defaults, of a person of 70 kg and
-//! 1.75 m; the ends are the stops of a brace. Muscles and ligaments have no moment of their own here: what
-//! resists is what the knee renders.
+//! A person who moves a leg knows its weight and its inertia, and lifts and swings it accordingly, as the plant's
+//! guiding hand does: the lag of a leg is what resists it.
+//!
+//! The numbers are those of the plant's `limb` at its defaults, of a person of 70 kg and 1.75 m; the ends are
+//! the stops of a brace. Muscles and ligaments have no moment of their own here: what resists is what the
+//! knee renders.
 
 use crate::hand::{Hand, HandPath};
 use crepitus_model::Real;
@@ -16,9 +19,6 @@ use crepitus_protocol::TICK_S;
 
 /// Inertia of leg and foot about the knee, kg·m².
 pub const LIMB_KG_M2: f64 = 0.4275;
-
-/// Inertia of the arm that holds them, kg·m².
-pub const ARM_KG_M2: f64 = 0.0679;
 
 /// Torque of the weight on a leg that is held out, N·m.
 pub const WEIGHT_NM: f64 = 10.92;
@@ -48,19 +48,13 @@ impl Leg {
         }
     }
 
-    /// One tick, with the resistance of the knee, N·m, and the hand that holds the leg, if one does.
-    pub fn step(&mut self, resistance_nm: f64, hand: Option<&HandPath>) {
-        let (pull_nm, inertia_kg_m2) = match hand {
-            Some(hand) => (
-                Hand::GUIDED.torque_nm(
-                    hand.angle_rad() - self.angle_rad,
-                    hand.omega_rad_s() - self.omega_rad_s,
-                ),
-                LIMB_KG_M2 + ARM_KG_M2,
-            ),
+    /// One tick, with the resistance of the knee, N·m. The hand that holds the leg, if one does, moves on.
+    pub fn step(&mut self, resistance_nm: f64, hand: Option<&mut HandPath>) {
+        let (moved_nm, inertia_kg_m2) = match hand {
+            Some(hand) => self.held(hand),
             None => (WEIGHT_NM * Real::sin_cos(self.angle_rad).1, LIMB_KG_M2),
         };
-        let torque_nm = pull_nm - resistance_nm - DAMPING_NMS_PER_RAD * self.omega_rad_s;
+        let torque_nm = moved_nm - resistance_nm - DAMPING_NMS_PER_RAD * self.omega_rad_s;
         let before_rad_s = self.omega_rad_s;
         self.omega_rad_s += TICK_S * torque_nm / inertia_kg_m2;
         self.angle_rad += 0.5 * TICK_S * (before_rad_s + self.omega_rad_s);
@@ -70,6 +64,21 @@ impl Leg {
         } else if self.angle_rad > most_rad {
             (self.angle_rad, self.omega_rad_s) = (most_rad, self.omega_rad_s.at_most(0.0));
         }
+    }
+
+    /// Torque of a hand that moves on, N·m, and the inertia of leg and arm, kg·m².
+    fn held(&self, hand: &mut HandPath) -> (f64, f64) {
+        let law = Hand::default();
+        let before = hand.state();
+        let now = hand.advance(TICK_S);
+        let pull_nm = law.torque_nm(
+            now.angle_rad - self.angle_rad,
+            now.omega_rad_s - self.omega_rad_s,
+        );
+        let inertia_kg_m2 = LIMB_KG_M2 + law.inertia_kg_m2;
+        let swing_rad_s2 = (now.omega_rad_s - before.omega_rad_s) / TICK_S;
+        let swing_nm = (inertia_kg_m2 * swing_rad_s2).within(law.limit_nm);
+        (pull_nm + swing_nm, inertia_kg_m2)
     }
 
     /// Flexion of the knee, rad.
@@ -86,22 +95,26 @@ impl Leg {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hand::HandState;
 
     fn leg() -> Leg {
         Leg::straight(&RangeSettings::default())
     }
 
+    fn hand() -> HandPath {
+        HandPath::taking(HandState::default())
+    }
+
     #[test]
     fn a_hand_at_rest_lags_by_what_resists() {
         for resistance_nm in [0.0, 3.0, -4.5] {
-            let (mut leg, mut hand) = (leg(), HandPath::at(0.0));
-            hand.turn_to(0.5);
-            for _ in 0..60_000 {
-                hand.advance();
-                leg.step(resistance_nm, Some(&hand));
+            let (mut leg, mut hand) = (leg(), hand());
+            hand.aim(0.5);
+            for _ in 0..80_000 {
+                leg.step(resistance_nm, Some(&mut hand));
             }
-            let lag_rad = hand.angle_rad() - leg.angle_rad();
-            let expected_rad = resistance_nm / Hand::GUIDED.stiffness_nm_per_rad;
+            let lag_rad = hand.state().angle_rad - leg.angle_rad();
+            let expected_rad = resistance_nm / Hand::default().stiffness_nm_per_rad;
             assert!((lag_rad - expected_rad).abs() < 1e-9, "{lag_rad}");
             assert!(leg.omega_rad_s().abs() < 1e-9);
         }
@@ -129,11 +142,10 @@ mod tests {
     #[test]
     fn stops_end_every_motion() {
         for target_rad in [-2.0, 4.0] {
-            let (mut leg, mut hand) = (leg(), HandPath::at(0.0));
-            hand.turn_to(target_rad);
+            let (mut leg, mut hand) = (leg(), hand());
+            hand.aim(target_rad);
             for _ in 0..40_000 {
-                hand.advance();
-                leg.step(0.0, Some(&hand));
+                leg.step(0.0, Some(&mut hand));
                 let deg = leg.angle_rad.to_degrees();
                 assert!((-10.0 - 1e-9..=130.0 + 1e-9).contains(&deg), "{deg}");
             }
@@ -144,13 +156,12 @@ mod tests {
     /// A path at its largest speed, thrown and turned: a brace would not let go.
     #[test]
     fn a_thrown_leg_is_no_faster_than_a_brace_allows() {
-        let (mut leg, mut hand) = (leg(), HandPath::at(0.0));
+        let (mut leg, mut hand) = (leg(), hand());
         let mut fastest_deg_s = 0.0_f64;
         for stroke in 0..8 {
-            hand.turn_to(if stroke % 2 == 0 { 2.1 } else { 0.0 });
+            hand.aim(if stroke % 2 == 0 { 2.1 } else { 0.0 });
             for _ in 0..10_000 {
-                hand.advance();
-                leg.step(0.0, Some(&hand));
+                leg.step(0.0, Some(&mut hand));
                 fastest_deg_s = fastest_deg_s.max(leg.omega_rad_s.to_degrees().abs());
             }
         }

@@ -45,7 +45,7 @@ pub mod leg;
 pub mod page;
 pub mod pipeline;
 
-pub use hand::{Hand, HandPath};
+pub use hand::{Hand, HandPath, HandState};
 pub use leg::Leg;
 pub use page::Page;
 pub use pipeline::Pipeline;

@@ -11,7 +11,7 @@
 #[cfg(target_arch = "wasm32")]
 mod exports;
 
-use crate::hand::HandPath;
+use crate::hand::{HandPath, HandState};
 use crate::leg::Leg;
 use crate::pipeline::{Pipeline, healthy};
 use crepitus_model::control::device_limits::RangeSettings;
@@ -125,7 +125,7 @@ impl Knee {
         Ok(Self {
             pipeline,
             leg: Leg::straight(&RangeSettings::default()),
-            hand: Some(HandPath::at(0.0)),
+            hand: Some(HandPath::taking(HandState::default())),
             sensing: Sensing::of_encoder(&EncoderSettings::default()),
             torque_nm: 0.0,
             committed: values,
@@ -145,11 +145,14 @@ impl Knee {
     }
 
     fn hold(&mut self, angle_rad: f64) {
-        // A hand takes the leg where it is.
-        let here_rad = self.leg.angle_rad();
+        // A hand takes the leg where it is, as it moves.
+        let leg = HandState {
+            angle_rad: self.leg.angle_rad(),
+            omega_rad_s: self.leg.omega_rad_s(),
+        };
         self.hand
-            .get_or_insert_with(|| HandPath::at(here_rad))
-            .turn_to(angle_rad);
+            .get_or_insert_with(|| HandPath::taking(leg))
+            .aim(angle_rad);
     }
 
     /// Count of the encoder: whole counts of the leg's angle, rounded down.
@@ -164,18 +167,16 @@ impl Knee {
 
     /// One tick.
     fn tick(&mut self) -> Sample {
-        if let Some(hand) = &mut self.hand {
-            hand.advance();
-        }
         let resistance_nm = f64::from(self.torque_nm);
-        self.leg.step(resistance_nm, self.hand.as_ref());
+        self.leg.step(resistance_nm, self.hand.as_mut());
         let count = self.count();
         let rendered = self.pipeline.tick(count.cast_unsigned(), true);
         self.torque_nm = rendered.torque_nm;
         if rendered.flags.has(SampleFlags::BREAK) {
             self.breaks = self.breaks.wrapping_add(1);
         }
-        let hand_rad = self.hand.map_or(self.leg.angle_rad(), |h| h.angle_rad());
+        let leg_rad = self.leg.angle_rad();
+        let hand_rad = self.hand.map_or(leg_rad, |hand| hand.state().angle_rad);
         let joint = self.pipeline.joint();
         let object_rad = joint.map_or(0.0, StickSlip::theta_rad);
         Sample {

@@ -67,11 +67,6 @@ pub fn assemble_with<A: Actuator>(
     };
     let has = |name: &str| listed.iter().any(|l| l.effect.name == name);
     let mut chain: Box<dyn Chain> = Box::new(Shaft);
-    let mut boundary: Box<dyn Boundary> = if released {
-        Box::new(Released)
-    } else {
-        Box::new(Prescribed::new(context.start))
-    };
     for Listed { effect, given } in listed {
         match effect.part {
             Part::Link(make) => {
@@ -94,9 +89,33 @@ pub fn assemble_with<A: Actuator>(
                     chain = make(given, context, chain);
                 }
             }
-            Part::Boundary(make) => boundary = make(given, context, chain.as_ref()),
-            Part::Joint | Part::Sensor | Part::Stage(..) | Part::Actuator(_) => {}
+            Part::Joint
+            | Part::Sensor
+            | Part::Stage(..)
+            | Part::Actuator(_)
+            | Part::Boundary(_) => {}
         }
     }
+    let boundary = boundary(listed, context, released, chain.as_ref());
     Plant::new(actuator, chain, boundary, context.start)
+}
+
+/// The boundary of `listed`, for a chain whose right end is at the start of the motion: a hand, or the motion itself;
+/// nobody, where the leg is `released`.
+pub fn boundary(
+    listed: &[Listed],
+    context: &Context,
+    released: bool,
+    chain: &dyn Chain,
+) -> Box<dyn Boundary> {
+    for Listed { effect, given } in listed {
+        if let Part::Boundary(make) = effect.part {
+            return make(given, context, chain);
+        }
+    }
+    if released {
+        Box::new(Released)
+    } else {
+        Box::new(Prescribed::new(context.start))
+    }
 }

@@ -12,6 +12,7 @@
 //! | what an effect is, and the table of them | [`effect`], [`effects`] |
 //! | how listed effects become a plant | [`assembly`] |
 //! | how a plant is stepped | [`plant`], [`chain`], [`branch`], [`compliance`], [`load`], [`actuator`], [`boundary`] |
+//! | the hand of a person at a screen | [`guiding_hand`] |
 //! | where its energy is | [`energy_balance`] |
 //! | a weight that swings in the brace, as a fit simulates it | [`swing`] |
 //! | the spectrum of what vibrates | [`spectrum`] |
@@ -29,6 +30,7 @@ pub mod effects;
 pub mod encoder;
 pub mod energy_balance;
 mod extremes;
+pub mod guiding_hand;
 pub mod load;
 pub mod motion;
 pub mod piece;

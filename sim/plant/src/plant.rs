@@ -84,8 +84,14 @@ impl<A: Actuator> Plant<A> {
     /// Releases the right end: from now on nobody holds it. What the hand was given and stored
     /// is no longer in the balance.
     pub fn release(&mut self) {
-        self.boundary = Box::new(Released);
-        self.chain.attach(0.0);
+        self.hold_by(|_| Box::new(Released));
+    }
+
+    /// Lets another boundary hold the right end from now on, where it is, made for this chain. The balance
+    /// starts again.
+    pub fn hold_by(&mut self, make: impl FnOnce(&dyn Chain) -> Box<dyn Boundary>) {
+        self.boundary = make(self.chain.as_ref());
+        self.chain.attach(self.boundary.inertia_kg_m2());
         self.start = self.booked();
     }
 

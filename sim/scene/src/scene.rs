@@ -23,8 +23,9 @@ use crate::reference::symptoms::NAMES;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::{Convention, SettingsError};
 use crepitus_plant::actuator::Actuator;
-use crepitus_plant::assembly::{Listed, assemble, assemble_with};
-use crepitus_plant::chain::Body;
+use crepitus_plant::assembly::{Listed, assemble, assemble_with, boundary};
+use crepitus_plant::boundary::Boundary;
+use crepitus_plant::chain::{Body, Chain};
 use crepitus_plant::effect::{Context, Effect, Given};
 use crepitus_plant::{Motion, Plant};
 use solver::{REFERENCE, read_solver, read_trace_step};
@@ -223,6 +224,15 @@ impl Scene {
     pub fn assemble_with<A: Actuator>(&self, tick_s: f64, actuator: A) -> Plant<A> {
         let context = self.context(tick_s);
         assemble_with(&self.listed, &context, !self.is_held(), actuator)
+    }
+
+    /// The boundary that holds the leg of a device with this tick, where the motion begins at `start`.
+    pub fn boundary(&self, tick_s: f64, start: Body, chain: &dyn Chain) -> Box<dyn Boundary> {
+        let context = Context {
+            start,
+            ..self.context(tick_s)
+        };
+        boundary(&self.listed, &context, !self.is_held(), chain)
     }
 
     fn context(&self, tick_s: f64) -> Context {

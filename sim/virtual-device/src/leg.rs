@@ -22,9 +22,11 @@
 //! within a tenth of a second, and rests.
 //!
 //! A leg that [begins straight](Scene::begins_straight) is at 0° until the motor is driven, and is led
-//! to the motion's start before that begins.
+//! to the motion's start before that begins. A [hand](HandInput) can take it from the motion, and give it back.
 
 mod coil;
+mod hand;
+mod hand_input;
 mod lead_in;
 mod sensors;
 #[cfg(test)]
@@ -32,9 +34,11 @@ mod tests;
 
 pub use coil::{COIL_RANGE_A, CoilFaults};
 pub use crepitus_plant::effects::motor::bridge::Terminals;
+pub use hand_input::HandInput;
 pub use sensors::{CurrentPath, CurrentSensor, EncoderWiring, SlowSensors};
 
 use coil::CoilDriver;
+use crepitus_knee::HandPath;
 use crepitus_model::Sense;
 use crepitus_plant::chain::Body;
 use crepitus_plant::effects::motor::bridge::Bridge;
@@ -54,12 +58,19 @@ const DISCHARGE_S: f64 = 0.1;
 /// A leg with brace, gear and motor.
 pub struct Leg {
     plant: Plant<Bridge>,
+    scene: Scene,
     walk: Walk<Motion>,
     /// Lead-in before the scene's motion, if there is one.
     lead_in: Option<LeadIn>,
+    /// Path of a hand that has the leg; without one the leg goes as the walk does.
+    path: Option<HandPath>,
+    input: HandInput,
+    /// Target of the hand that was executed last.
+    target_rad: Option<f64>,
     /// Time of the motions before this one, s.
     before_s: f64,
     steps_per_half: u32,
+    step_s: f64,
     counter: Counter,
     /// Current sensors of the loop, and of the monitor.
     current_sensors: [CurrentSensor; 2],
@@ -85,21 +96,28 @@ impl Leg {
             motion: Motion::rest(0.0),
             ..scene.clone()
         });
-        let scene = straight.as_ref().unwrap_or(scene);
+        let at_first = straight.as_ref().unwrap_or(scene);
         // A scene's steps are those of a tick.
         let steps_per_half = scene.substeps.div_ceil(2);
         let step_s = TICK_S / (2.0 * f64::from(steps_per_half));
         let motor = MotorNumbers::of(&scene.given(&motor::EFFECT));
-        let plant = scene.assemble_with(TICK_S, Bridge::new(motor, step_s));
+        let plant = at_first.assemble_with(TICK_S, Bridge::new(motor, step_s));
         let encoder = scene.encoder.unwrap_or_default();
+        let input = HandInput::default();
+        input.report(None, plant.shaft().angle_rad);
         Self {
             counter: Counter::new(&encoder, plant.shaft().angle_rad),
             begun: (plant.felt_nms(), 0.0),
             plant,
-            walk: Walk::new(scene.endless_motion(), step_s),
+            walk: Walk::new(at_first.endless_motion(), step_s),
+            scene: scene.clone(),
             lead_in,
+            path: None,
+            input,
+            target_rad: None,
             before_s: 0.0,
             steps_per_half,
+            step_s,
             current_sensors: [CurrentSensor::Right; 2],
             slow_sensors: SlowSensors::default(),
             capacitors_v: motor.supply_v,
@@ -121,21 +139,27 @@ impl Leg {
     pub fn second_half(&mut self) {
         self.half();
         self.lead();
+        let felt_nms = self.plant.felt_nms();
+        self.follow_hand();
         self.capacitors_v = if self.is_supplied {
             self.supply_v()
         } else {
             self.capacitors_v * (-TICK_S / DISCHARGE_S).exp()
         };
-        let (felt_nms, charge_c) = self.begun;
+        let (before_nms, charge_c) = self.begun;
         let bridge = self.plant.actuator();
         let impulse_nms = bridge.winding().settings().constant * (bridge.charge_c() - charge_c);
-        self.felt_nm = (self.plant.felt_nms() - felt_nms) / TICK_S;
+        self.felt_nm = (felt_nms - before_nms) / TICK_S;
         self.motor_nm = -impulse_nms / TICK_S;
     }
 
     fn half(&mut self) {
         for _ in 0..self.steps_per_half {
-            self.walk.advance(&mut self.plant);
+            if let Some(path) = &mut self.path {
+                self.plant.advance(&hand::step(path, self.step_s));
+            } else {
+                self.walk.advance(&mut self.plant);
+            }
         }
         self.counter.turn_to(self.plant.shaft().angle_rad);
     }

@@ -7,7 +7,7 @@
 //! | to find | look in |
 //! |---|---|
 //! | the two controllers and their lines | [`board`] |
-//! | motor, encoder and leg | [`leg`] |
+//! | motor, encoder and leg, moved by a scene or by a hand | [`leg`] |
 //! | the link, and its faults | [`wire`], [`faults`] |
 //! | the device at the end of a USB cable | [`virtual_device`] |
 //! | a software USB bus, and what is at its host's end | [`usb`] |
@@ -28,5 +28,5 @@ pub mod wire;
 
 pub use board::{Board, Controller, Start};
 pub use faults::{FaultInjector, Faults};
-pub use leg::Leg;
+pub use leg::{HandInput, Leg};
 pub use virtual_device::{VirtualDevice, VirtualError};

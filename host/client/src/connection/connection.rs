@@ -6,6 +6,7 @@ use crate::discovery::{self, Device, DeviceKind};
 use crate::sharing::{Program, Shared};
 use crate::{Serial, Transport, TransportError};
 use crepitus_scene::{Scene, SceneError};
+use crepitus_virtual_device::HandInput;
 use std::path::Path;
 use std::time::Duration;
 
@@ -79,6 +80,14 @@ impl Connection {
         match self {
             Self::Simulated(simulated) => Self::Simulated(Box::new(simulated.in_real_time())),
             at_a_port => at_a_port,
+        }
+    }
+
+    /// Input of a hand that moves the leg of a device in this process.
+    pub fn hand(&self) -> Option<HandInput> {
+        match self {
+            Self::Simulated(simulated) => simulated.hand(),
+            Self::Shared(_) | Self::Alone(_) => None,
         }
     }
 

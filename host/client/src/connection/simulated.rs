@@ -8,7 +8,7 @@ use crepitus_protocol::TICKS_PER_S;
 use crepitus_scene::Scene;
 use crepitus_scene::values::values;
 use crepitus_virtual_device::usb::cabled::CabledDevice;
-use crepitus_virtual_device::{Leg, Start, VirtualDevice};
+use crepitus_virtual_device::{HandInput, Leg, Start, VirtualDevice};
 use std::thread::sleep;
 use std::time::Duration;
 
@@ -19,6 +19,8 @@ const TIMEOUT_TICKS: u64 = 10_000;
 pub struct Simulated {
     device: Box<dyn CabledDevice>,
     name: String,
+    /// Input of a hand that moves its leg.
+    hand: Option<HandInput>,
     /// Whether the last write was incomplete, so that a delimiter has to go first.
     torn: bool,
     /// Limit to real time, if there is one.
@@ -40,8 +42,16 @@ const NAP: Duration = Duration::from_micros(500);
 /// # Errors
 /// [`NoTarget`] without the emulator or the images, or if no device can render the scene.
 pub fn emulated(scene: &Scene, on_build: impl FnOnce()) -> Result<Box<dyn CabledDevice>, NoTarget> {
+    emulated_with(Leg::new(scene), scene, on_build)
+}
+
+fn emulated_with(
+    leg: Leg,
+    scene: &Scene,
+    on_build: impl FnOnce(),
+) -> Result<Box<dyn CabledDevice>, NoTarget> {
     let values = values(scene).map_err(|error| NoTarget::NoDevice(error.to_string()))?;
-    on_target::device(Leg::new(scene), &values, on_build)
+    on_target::device(leg, &values, on_build)
 }
 
 impl Simulated {
@@ -50,8 +60,9 @@ impl Simulated {
     /// # Errors
     /// [`crepitus_virtual_device::VirtualError`] if the scene has what no device has.
     pub fn of(scene: &Scene) -> Result<Self, crepitus_virtual_device::VirtualError> {
-        let device = Box::new(VirtualDevice::of(scene, &Start::default())?);
-        Ok(Self::cabled(device).named("a simulated device"))
+        let device = VirtualDevice::of(scene, &Start::default())?;
+        let hand = device.board().leg().hand();
+        Ok(Self::cabled(Box::new(device)).named("a simulated device", hand))
     }
 
     /// Creates the device of a scene with the firmware's own images on emulated controllers.
@@ -60,8 +71,10 @@ impl Simulated {
     /// [`NoTarget`] without the emulator or the images.
     pub fn emulated(scene: &Scene) -> Result<Self, NoTarget> {
         let on_build = || eprintln!("building firmware, if it is not up to date");
-        let device = emulated(scene, on_build)?;
-        Ok(Self::cabled(device).named("an emulated device"))
+        let leg = Leg::new(scene);
+        let hand = leg.hand();
+        let device = emulated_with(leg, scene, on_build)?;
+        Ok(Self::cabled(device).named("an emulated device", hand))
     }
 
     /// Wraps a device at the end of a virtual cable, such as one with injected faults.
@@ -69,14 +82,21 @@ impl Simulated {
         Self {
             device,
             name: "a device on a virtual cable".to_owned(),
+            hand: None,
             torn: false,
             pace: None,
         }
     }
 
-    fn named(mut self, name: &str) -> Self {
+    fn named(mut self, name: &str, hand: HandInput) -> Self {
         name.clone_into(&mut self.name);
+        self.hand = Some(hand);
         self
+    }
+
+    /// Input of a hand that moves its leg, beside the cable; `None` for a device that was [wrapped](Self::cabled).
+    pub fn hand(&self) -> Option<HandInput> {
+        self.hand.clone()
     }
 
     /// Limits the device to real time.

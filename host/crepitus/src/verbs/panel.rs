@@ -88,6 +88,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let source = Source::Device {
         name: client.port(),
         serial: crepitus_client::connection::device_text::serial(&client.handshake().comms),
+        hand: client.transport_mut().hand(),
     };
     let panel = Panel::open(settings, &source).map_err(Failure::input)?;
     let _opened = announce(&panel, arguments, as_json)?;

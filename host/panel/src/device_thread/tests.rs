@@ -118,8 +118,10 @@ impl Program<Flood> for Alone {
 fn device_thread(program: &Alone) -> DeviceThread<'_, Flood> {
     let scene =
         shipped::scene(Path::new("passive-examination"), &Overrides::default()).expect("a scene");
+    let device = Simulated::of(&scene).expect("a device");
+    let hand = device.hand();
     let flood = Flood {
-        device: Simulated::of(&scene).expect("a device"),
+        device,
         received: None,
         ear: Decoder::new(),
         disarms: Arc::default(),
@@ -131,7 +133,7 @@ fn device_thread(program: &Alone) -> DeviceThread<'_, Flood> {
     let (questions, _) = mpsc::channel();
     let tokens = Tokens::draw().expect("a secret");
     let shared = Arc::new(Shared::new(tokens, Value::Null, orders, questions));
-    DeviceThread::new(client, program, shared, inbox, None).expect("it answers")
+    DeviceThread::new(client, program, shared, inbox, None, hand).expect("it answers")
 }
 
 /// Torque ends with what the device thread sends, not with the lease.

@@ -71,6 +71,8 @@ pub struct Bin {
     pub speed_rad_s: Extremes<f32>,
     /// Angle, rad.
     pub angle_rad: Extremes<f32>,
+    /// Angle at which a hand wants the leg, rad; none without one.
+    pub hand_rad: Extremes<f32>,
     /// The [states](crate::live::STATES) that occurred.
     pub states: u32,
     /// Sticks that broke.
@@ -101,6 +103,7 @@ impl Bin {
         self.model_nm.join(other.model_nm);
         self.speed_rad_s.join(other.speed_rad_s);
         self.angle_rad.join(other.angle_rad);
+        self.hand_rad.join(other.hand_rad);
         self.states |= other.states;
         self.breaks = self.breaks.saturating_add(other.breaks);
         self.marks.0 |= other.marks.0;
@@ -210,6 +213,14 @@ impl Envelope {
         }
     }
 
+    /// Adds the angle at which a hand wants the leg now, rad, to the bin at hand.
+    pub fn hold(&mut self, angle_rad: f64) {
+        if let Some((_, bin)) = &mut self.bins.open {
+            #[expect(clippy::cast_possible_truncation, reason = "a drawn angle")]
+            bin.hand_rad.add(angle_rad as f32);
+        }
+    }
+
     /// Number of the first complete bin, and all of them, oldest first; they are removed.
     pub fn complete(&mut self) -> (u64, Vec<Bin>) {
         let count = u64::try_from(self.ready.len()).unwrap_or(0);
@@ -252,6 +263,22 @@ mod tests {
         let highest: Vec<_> = bins.iter().map(|bin| bin.torque_nm.high).collect();
         assert_eq!(highest, [0.5, 0.5, 3.0, 0.5]);
         assert!(bins.iter().all(|bin| bin.torque_nm.low == 0.5));
+    }
+
+    #[test]
+    fn a_hand_is_in_the_bins_in_which_it_held_the_leg() {
+        let mut envelope = Envelope::new(100);
+        envelope.hold(9.0);
+        for tick in 0..300 {
+            envelope.take(&row(tick, 0.0));
+            if (150..160).contains(&tick) {
+                envelope.hold(if tick == 155 { 0.75 } else { 0.5 });
+            }
+        }
+        let bins = envelope.finish().1;
+        let held: Vec<_> = bins.iter().map(|bin| !bin.hand_rad.is_empty()).collect();
+        assert_eq!(held, [false, true, false]);
+        assert_eq!((bins[1].hand_rad.low, bins[1].hand_rad.high), (0.5, 0.75));
     }
 
     #[test]

@@ -9,6 +9,7 @@ mod cuff;
 mod drivetrain;
 mod energy;
 mod grip;
+mod guiding_hand;
 mod hand;
 mod hard;
 mod limb;

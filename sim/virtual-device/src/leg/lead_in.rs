@@ -13,9 +13,13 @@
 //! of a simulated device waits there until the device is armed. Arming pushes the motor for
 //! 16 ms, which is no reason to begin. A motion that begins with a velocity gets a run-up of a
 //! tenth of a second, in which it grows evenly.
+//!
+//! The way back from a hand that has moved the leg is such a stroke, too. If the leg moves there, it is first
+//! slowed down to rest, as evenly and as long.
 
 use super::TICK_S;
 use crepitus_plant::Motion;
+use crepitus_plant::chain::Body;
 use crepitus_plant::motion::{STOP_S, Strokes};
 use crepitus_plant::piece::{Curve, Piece};
 use crepitus_scene::Scene;
@@ -54,13 +58,25 @@ impl LeadIn {
         if !scene.begins_straight || !scene.is_held() || start.angle_rad == 0.0 {
             return None;
         }
-        let (way, way_ticks) = way(start.angle_rad, start.omega_rad_s);
+        let (way, way_ticks) = way(Body::default(), start);
         Some(Self {
             way,
             way_ticks,
             then: scene.endless_motion(),
             stage: Stage::Waits { driven_ticks: 0 },
         })
+    }
+
+    /// Returns the way to a scene's motion of a leg that is elsewhere, which begins at once, and its motion.
+    pub(super) fn back(from: Body, scene: &Scene) -> (Self, Motion) {
+        let (way, way_ticks) = way(from, scene.start());
+        let lead_in = Self {
+            way: way.clone(),
+            way_ticks,
+            then: scene.endless_motion(),
+            stage: Stage::Leads { ticks: way_ticks },
+        };
+        (lead_in, way)
     }
 
     /// A tick is over, in which the motor was driven or not. Returns the motion that begins
@@ -90,49 +106,64 @@ impl LeadIn {
     }
 }
 
-/// The motion from rest at 0° to an angle that is reached with a velocity, and its length in ticks.
-fn way(angle_rad: f64, omega_rad_s: f64) -> (Motion, u32) {
-    let run_up_s = if omega_rad_s == 0.0 { 0.0 } else { STOP_S };
-    let before_rad = angle_rad - 0.5 * omega_rad_s * run_up_s;
-    let stroke = Strokes {
-        from_rad: 0.0,
-        to_rad: before_rad,
-        peak_speed_rad_s: SPEED_RAD_S,
-        pause_s: 0.0,
-    };
-    let stroke_ticks = whole_ticks(stroke.stroke_s());
-    let stroke_s = f64::from(stroke_ticks) * TICK_S;
-    // φ = Δ·(10σ³ − 15σ⁴ + 6σ⁵), as a stroke of a scene, but for whole ticks.
-    let cube = stroke_s * stroke_s * stroke_s;
+/// The motion from one angle and velocity to another, and its length in ticks.
+fn way(from: Body, to: Body) -> (Motion, u32) {
+    let even_s = |omega_rad_s: f64| if omega_rad_s == 0.0 { 0.0 } else { STOP_S };
+    let (brake_s, run_up_s) = (even_s(from.omega_rad_s), even_s(to.omega_rad_s));
+    let rest_rad = from.angle_rad + 0.5 * from.omega_rad_s * brake_s;
+    let before_rad = to.angle_rad - 0.5 * to.omega_rad_s * run_up_s;
     let piece = |start_s: f64, end_s: f64, polynomial: [f64; 6]| Piece {
         start_s,
         end_s,
         jump: false,
         curve: Curve::Polynomial(polynomial),
     };
-    let mut pieces = vec![piece(
+    let (mut pieces, mut ticks) = (Vec::new(), 0);
+    let mut start_s = 0.0;
+    if brake_s > 0.0 {
+        ticks += whole_ticks(brake_s);
+        let end_s = f64::from(ticks) * TICK_S;
+        let Body {
+            angle_rad,
+            omega_rad_s,
+        } = from;
+        let half_slope = -0.5 * omega_rad_s / brake_s;
+        let polynomial = [angle_rad, omega_rad_s, half_slope, 0.0, 0.0, 0.0];
+        pieces.push(piece(start_s, end_s, polynomial));
+        start_s = end_s;
+    }
+    let stroke = Strokes {
+        from_rad: rest_rad,
+        to_rad: before_rad,
+        peak_speed_rad_s: SPEED_RAD_S,
+        pause_s: 0.0,
+    };
+    let stroke_ticks = whole_ticks(stroke.stroke_s());
+    let stroke_s = f64::from(stroke_ticks) * TICK_S;
+    // φ = φ₀ + Δ·(10σ³ − 15σ⁴ + 6σ⁵), as a stroke of a scene, but for whole ticks.
+    let (travel_rad, cube) = (before_rad - rest_rad, stroke_s * stroke_s * stroke_s);
+    ticks += stroke_ticks;
+    let end_s = f64::from(ticks) * TICK_S;
+    let polynomial = [
+        rest_rad,
         0.0,
-        stroke_s,
-        [
-            0.0,
-            0.0,
-            0.0,
-            10.0 * before_rad / cube,
-            -15.0 * before_rad / (cube * stroke_s),
-            6.0 * before_rad / (cube * stroke_s * stroke_s),
-        ],
-    )];
-    let mut ticks = stroke_ticks;
+        0.0,
+        10.0 * travel_rad / cube,
+        -15.0 * travel_rad / (cube * stroke_s),
+        6.0 * travel_rad / (cube * stroke_s * stroke_s),
+    ];
+    pieces.push(piece(start_s, end_s, polynomial));
+    start_s = end_s;
     if run_up_s > 0.0 {
         ticks += whole_ticks(run_up_s);
         let end_s = f64::from(ticks) * TICK_S;
-        let half_slope = 0.5 * omega_rad_s / run_up_s;
+        let half_slope = 0.5 * to.omega_rad_s / run_up_s;
         let polynomial = [before_rad, 0.0, half_slope, 0.0, 0.0, 0.0];
-        pieces.push(piece(stroke_s, end_s, polynomial));
+        pieces.push(piece(start_s, end_s, polynomial));
+        start_s = end_s;
     }
-    let end_s = f64::from(ticks) * TICK_S;
-    let straight_on = [angle_rad, omega_rad_s, 0.0, 0.0, 0.0, 0.0];
-    pieces.push(piece(end_s, f64::INFINITY, straight_on));
+    let straight_on = [to.angle_rad, to.omega_rad_s, 0.0, 0.0, 0.0, 0.0];
+    pieces.push(piece(start_s, f64::INFINITY, straight_on));
     (Motion::Sequence(pieces), ticks)
 }
 
@@ -151,6 +182,14 @@ fn whole_ticks(seconds: f64) -> u32 {
 mod tests {
     use super::*;
 
+    /// A leg at this angle in degrees, with this velocity in rad/s.
+    fn body((deg, omega_rad_s): (f64, f64)) -> Body {
+        Body {
+            angle_rad: deg.to_radians(),
+            omega_rad_s,
+        }
+    }
+
     /// Angle and velocity at every tick.
     fn states(motion: &Motion, ticks: u32) -> Vec<(f64, f64)> {
         (0..=ticks)
@@ -163,22 +202,26 @@ mod tests {
 
     #[test]
     fn a_way_is_slow_and_ends_as_the_motion_begins() {
-        for (deg, omega) in [
-            (60.0, 0.0),
-            (-4.0, 0.0),
-            (1e-9, 0.0),
-            (50.0, 0.1),
-            (5.0, -3.0),
+        for (from, to) in [
+            ((0.0, 0.0), (60.0, 0.0)),
+            ((0.0, 0.0), (-4.0, 0.0)),
+            ((0.0, 0.0), (1e-9, 0.0)),
+            ((0.0, 0.0), (50.0, 0.1)),
+            ((0.0, 0.0), (5.0, -3.0)),
+            ((70.0, 0.0), (20.0, 0.0)),
+            ((70.0, 4.0), (20.0, 0.0)),
+            ((30.0, -1e-6), (30.0, 0.5)),
         ] {
-            let angle_rad = f64::to_radians(deg);
-            let (motion, ticks) = way(angle_rad, omega);
+            let (deg, from, to) = (to.0, body(from), body(to));
+            let (motion, ticks) = way(from, to);
             let states = states(&motion, ticks);
-            assert_eq!(states[0], (0.0, 0.0));
+            assert_eq!(states[0], (from.angle_rad, from.omega_rad_s));
             let (end_rad, end_rad_s) = states[states.len() - 1];
-            assert!((end_rad - angle_rad).abs() < 1e-12, "{deg}: {end_rad}");
-            assert!((end_rad_s - omega).abs() < 1e-12, "{deg}: {end_rad_s}");
+            assert!((end_rad - to.angle_rad).abs() < 1e-12, "{deg}: {end_rad}");
+            assert!((end_rad_s - to.omega_rad_s).abs() < 1e-12, "{deg}");
             let fastest = states.iter().fold(0.0_f64, |most, s| most.max(s.1.abs()));
-            assert!(fastest <= SPEED_RAD_S.max(omega.abs()) + 1e-9, "{fastest}");
+            let ends = from.omega_rad_s.abs().max(to.omega_rad_s.abs());
+            assert!(fastest <= SPEED_RAD_S.max(ends) + 1e-9, "{fastest}");
             // Angle and velocity go on over the ends of pieces.
             for pair in states.windows(2) {
                 let mean = 0.5 * (pair[0].1 + pair[1].1);
@@ -187,12 +230,12 @@ mod tests {
             }
         }
         // 60° at 30 deg/s at most: 15/8 of the mean.
-        assert_eq!(way(f64::to_radians(60.0), 0.0).1, 75_000);
+        assert_eq!(way(Body::default(), body((60.0, 0.0))).1, 75_000);
     }
 
     #[test]
     fn a_motor_that_is_pushed_is_no_reason_to_begin() {
-        let (way, way_ticks) = way(1.0, 0.0);
+        let (way, way_ticks) = way(Body::default(), body((57.0, 0.0)));
         let mut lead_in = LeadIn {
             way,
             way_ticks,

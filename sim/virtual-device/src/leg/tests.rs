@@ -1,5 +1,7 @@
 //! The leg against closed forms, and its faults.
 
+mod by_hand;
+
 use super::*;
 use crepitus_plant::effects::motor::bridge::DIODE_V;
 use crepitus_scene::Overrides;

@@ -1,0 +1,96 @@
+//! Input of a hand that moves the leg, beside the protocol.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// Input of a hand, which the leg looks at once a tick, and what the leg reports. All clones are one input, for any
+/// thread: each number stands for itself, so none waits for another.
+#[derive(Clone, Debug)]
+pub struct HandInput(Arc<Numbers>);
+
+/// Numbers as their bits; NaN is none.
+#[derive(Debug)]
+struct Numbers {
+    target_rad: AtomicU64,
+    hand_rad: AtomicU64,
+    shaft_rad: AtomicU64,
+}
+
+impl Default for HandInput {
+    fn default() -> Self {
+        let none = || AtomicU64::new(f64::NAN.to_bits());
+        Self(Arc::new(Numbers {
+            target_rad: none(),
+            hand_rad: none(),
+            shaft_rad: AtomicU64::new(0),
+        }))
+    }
+}
+
+impl HandInput {
+    /// Sets the angle to which the hand moves the leg, rad, and takes the leg if nobody has it. One that is no number
+    /// is ignored.
+    pub fn aim(&self, angle_rad: f64) {
+        if angle_rad.is_finite() {
+            store(&self.0.target_rad, angle_rad);
+        }
+    }
+
+    /// Lets go of the leg: the scene's motion goes on.
+    pub fn release(&self) {
+        store(&self.0.target_rad, f64::NAN);
+    }
+
+    /// Angle of the hand, rad, on its way to where it moves; `None` while it does not have the leg.
+    pub fn hand_rad(&self) -> Option<f64> {
+        load(&self.0.hand_rad)
+    }
+
+    /// Angle of the shaft that the encoder counts, rad.
+    pub fn shaft_rad(&self) -> f64 {
+        load(&self.0.shaft_rad).unwrap_or_default()
+    }
+
+    /// Angle to which the hand moves, rad; `None` where it does not hold the leg.
+    pub(super) fn target_rad(&self) -> Option<f64> {
+        load(&self.0.target_rad)
+    }
+
+    /// Reports a tick of the leg.
+    pub(super) fn report(&self, hand_rad: Option<f64>, shaft_rad: f64) {
+        store(&self.0.hand_rad, hand_rad.unwrap_or(f64::NAN));
+        store(&self.0.shaft_rad, shaft_rad);
+    }
+}
+
+fn load(place: &AtomicU64) -> Option<f64> {
+    let number = f64::from_bits(place.load(Relaxed));
+    (!number.is_nan()).then_some(number)
+}
+
+fn store(place: &AtomicU64, number: f64) {
+    place.store(number.to_bits(), Relaxed);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clones_are_one_input() {
+        let input = HandInput::default();
+        let leg = input.clone();
+        assert_eq!((leg.target_rad(), input.hand_rad()), (None, None));
+        input.aim(0.5);
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            input.aim(bad);
+            assert_eq!(leg.target_rad(), Some(0.5));
+        }
+        leg.report(Some(0.25), 0.75);
+        assert_eq!((input.hand_rad(), input.shaft_rad()), (Some(0.25), 0.75));
+        input.release();
+        assert_eq!(leg.target_rad(), None);
+        leg.report(None, 0.75);
+        assert_eq!(input.hand_rad(), None);
+    }
+}
