@@ -24,7 +24,7 @@
 //! | many runs of a scene | `sweep.rs` |
 //! | a joint to step by hand | `joint.rs` |
 //! | devices, what they are given | `device.rs`, `knee.rs` |
-//! | samples, recordings | `following.rs`, `received.rs`, `samples.rs` |
+//! | samples, recordings, examinations | `following.rs`, `received.rs`, `samples.rs`, `examination.rs` |
 
 // Python hands its arguments over by value.
 #![allow(clippy::needless_pass_by_value)]
@@ -32,6 +32,7 @@
 mod columns;
 mod device;
 mod errors;
+mod examination;
 mod following;
 mod joint;
 mod knee;
@@ -61,5 +62,6 @@ fn _crepitus(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(shipped::scenes, module)?)?;
     module.add_function(wrap_pyfunction!(shipped::presets, module)?)?;
     module.add_function(wrap_pyfunction!(shipped::parameters, module)?)?;
+    module.add_function(wrap_pyfunction!(examination::examination, module)?)?;
     module.add_function(wrap_pyfunction!(samples::read_recording, module)?)
 }

@@ -229,6 +229,22 @@ def test_a_simulated_device_repeats_itself() -> None:
     assert torque() == torque()
 
 
+def test_an_examination_is_measured() -> None:
+    with Device("sim") as device:
+        device.apply("coarse")
+        device.zero()
+        device.arm()
+        stream = device.stream(12.0)
+    is_on = stream.samples["limit"] != "not-armed"
+    off = crepitus.Stream({name: column[~is_on] for name, column in stream.samples.items()}, {})
+    assert np.isnan(list(crepitus.examination(off).values())).all()
+    measures = crepitus.examination(stream)
+    angles_deg = np.degrees(stream.samples["angle_rad"][is_on])
+    assert measures["range_deg"] == pytest.approx(np.ptp(angles_deg), abs=1e-6)
+    assert measures["flexion_deg"] == pytest.approx(angles_deg.max(), abs=1e-6)
+    assert 20.0 < measures["peak_speed_deg_s"] < 90.0 and np.isnan(measures["catch_deg"])
+
+
 def test_real_time_is_not_faster() -> None:
     with Device("sim", real_time=True) as device:
         begun = time.monotonic()

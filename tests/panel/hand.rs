@@ -94,7 +94,7 @@ fn a_hand_moves_the_leg_and_gives_it_back() {
     page.until("two strokes", |page| {
         let legs: Vec<_> = seen(page).iter().map(|seen| seen.leg).collect();
         let highest = legs.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        highest > 65.0 && legs.last().is_some_and(|last| *last < 5.0)
+        highest > 75.0 && legs.last().is_some_and(|last| *last < 12.0)
     });
 }
 

@@ -293,21 +293,30 @@ fn frames_join_and_all_samples_are_accounted_for() {
 }
 
 #[test]
-fn a_target_is_judged_and_scored() {
+fn a_simulated_examiner_is_measured_and_not_scored() {
     let panel = Panel::new(&SIM);
     let mut page = panel.controlling();
     page.ask("target", json!({ "target": "medium" })).unwrap();
     page.ask("score", json!({ "running": true })).unwrap();
-    // A stroke of the simulated leg takes two seconds.
-    page.until("two strokes", |page| {
-        page.latest["target"]["strokes"].as_u64() >= Some(2)
+    page.arm();
+    // From straight to 80°.
+    page.until("a stroke", |page| {
+        page.latest["examination"]["measures"][0].as_f64() > Some(75.0)
     });
     page.ask("score", json!({ "running": false })).unwrap();
-    let target = page.latest["target"].clone();
-    assert!(target["seconds"].as_f64().unwrap() > 2.0);
-    // Up to 60 °/s, where 65 to 120 are asked for.
-    assert_eq!(target["score"], 0.0);
-    assert!(target["share_slow"].as_f64().unwrap() > 0.99);
+    let target = &page.latest["target"];
+    assert_eq!(target["by_person"], false);
+    assert_eq!(target["strokes"], 0);
+    assert_eq!(target["seconds"], 0.0);
+    assert!(target["score"].is_null() && target["share_slow"].is_null());
+    let examination = &page.latest["examination"];
+    assert_eq!(examination["by_person"], false);
+    assert_eq!(examination["findings"][0]["outcome"], "shown");
+    // Another one begins with nothing.
+    page.ask("examine", json!({})).unwrap();
+    page.until("another examination", |page| {
+        page.latest["examination"]["measures"][0].as_f64() < Some(60.0)
+    });
     for bad in [
         json!("quick"),
         json!({ "low_deg_per_s": 50, "high_deg_per_s": 40 }),

@@ -80,15 +80,34 @@ test("friction compensation that is off is said, with what it costs, to those wh
   assert.equal(await viewer.locator("#friction").textContent(), "");
 });
 
-test("a target speed is shown, judged and scored", async () => {
+test("a target speed is shown, and a simulated examiner is not scored", async () => {
   const panel = await startPanel();
   const page = await openControlling(panel.teacher);
   await page.locator("#target select").first().selectOption("slow");
   await page.getByRole("button", { name: "Start scoring" }).click();
-  await page.getByText(/too fast|right|too slow/).first().waitFor();
+  await page.getByText("nothing is judged or scored").waitFor();
+  await arm(page);
   await page.waitForTimeout(4500);
   await page.getByRole("button", { name: "Stop scoring" }).click();
-  await page.getByText(/Score \d+ of 100/).waitFor();
+  assert.doesNotMatch(await page.locator("#target").innerText(), /Score \d/);
+  assert.deepEqual(page.problems, []);
+});
+
+test("a simulated examiner stretches MAS 1 fast, and the page measures the catch", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  const spasticity = page.locator("#knee .card", { hasText: "Spasticity (modified" });
+  await spasticity.getByRole("radio", { name: /MAS 1 .*catch/ }).check({ force: true });
+  await spasticity.getByRole("button", { name: "Apply" }).click();
+  await page.locator("#knee-now", { hasText: "MAS 1" }).waitFor();
+  const examination = page.locator("#examination");
+  await examination.getByText("○ Spasticity: the leg was hardly moved").waitFor();
+  await arm(page);
+  await examination.getByText("✓ Spasticity: you made the movement that shows it").waitFor({ timeout: 20000 });
+  await until(page, "its angle", () =>
+    [...document.querySelectorAll("#examination dt")].some((name) =>
+      name.textContent === "Catch angle (R1)" && /^\d+°$/.test(name.nextSibling.textContent)), null, 20000);
+  await examination.getByRole("button", { name: "Begin again" }).click();
   assert.deepEqual(page.problems, []);
 });
 

@@ -189,6 +189,8 @@ test("a fault says what to do, shows its page of the book, and can be cleared", 
   const panel = await startPanel();
   const page = await openControlling(panel.teacher);
   await arm(page);
+  // A leg that was led from straight goes on without torque.
+  await page.waitForTimeout(500);
   await page.keyboard.press("Escape");
   await untilState(page, "disarmed");
   await page.waitForTimeout(1500);

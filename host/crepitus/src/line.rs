@@ -8,7 +8,7 @@ use crepitus_client::sharing::Program;
 use crepitus_client::{Client, Error, Management, RequestKind, TransportError};
 use crepitus_protocol::Session;
 use crepitus_protocol::host::Refusal;
-use crepitus_scene::{Overrides, Scene, shipped};
+use crepitus_scene::{Overrides, Scene, SceneError, shipped};
 use std::path::Path;
 
 /// The scene of a device in this process.
@@ -16,16 +16,31 @@ const SCENE: &str = "passive-examination";
 
 /// Opens the connection to the device that the arguments name.
 pub(crate) fn open(arguments: &DeviceArguments) -> Result<Line, Failure> {
-    opened(arguments, false)
+    opened(arguments, false, usual_scene)
 }
 
 /// Opens it for a command that arms like this. Where it sets the zero before, the leg of a device
 /// in this process begins straight: the device has the angles of the scene then.
 pub(crate) fn open_to_arm(arguments: &DeviceArguments, arming: Arming) -> Result<Line, Failure> {
-    opened(arguments, arming.arm && arming.zero)
+    let begins_straight = arming.arm && arming.zero;
+    opened(arguments, begins_straight, usual_scene)
 }
 
-fn opened(arguments: &DeviceArguments, begins_straight: bool) -> Result<Line, Failure> {
+/// Opens it for the panel; a device in this process is not faster than real time, and its leg begins
+/// straight. Without a scene an examiner chooses the motion by the knee that is on the device.
+pub(crate) fn open_examined(arguments: &DeviceArguments) -> Result<Line, Failure> {
+    opened(arguments, true, shipped::examination).map(Line::in_real_time)
+}
+
+fn usual_scene() -> Result<Scene, SceneError> {
+    shipped::scene(Path::new(SCENE), &Overrides::default())
+}
+
+fn opened(
+    arguments: &DeviceArguments,
+    begins_straight: bool,
+    default: impl FnOnce() -> Result<Scene, SceneError>,
+) -> Result<Line, Failure> {
     let device = arguments.device.as_deref();
     if let Some(scene) = &arguments.scene
         && !device.is_some_and(is_in_this_process)
@@ -36,9 +51,12 @@ fn opened(arguments: &DeviceArguments, begins_straight: bool) -> Result<Line, Fa
             scene.display()
         )));
     }
-    let scene = arguments.scene.as_deref().unwrap_or(Path::new(SCENE));
     let scene = || {
-        shipped::scene(scene, &Overrides::default()).map(|scene| Scene {
+        let scene = match &arguments.scene {
+            Some(scene) => shipped::scene(scene, &Overrides::default()),
+            None => default(),
+        };
+        scene.map(|scene| Scene {
             begins_straight,
             ..scene
         })

@@ -8,6 +8,7 @@ mod following;
 mod interrupt;
 mod keys;
 mod line;
+mod measures;
 mod output;
 mod overlay;
 mod own_presets;

@@ -5,6 +5,7 @@ import { latest } from "./connection.js";
 import { controlReason } from "./control.js";
 import { confirmed } from "./dialogs.js";
 import { el, field, freshId, setText, tick } from "./dom.js";
+import { findingText, missed, setLines } from "./measures.js";
 import { disorderName, levelName, presetTitle } from "./names.js";
 import { liveTime } from "./live.js";
 import { request } from "./report.js";
@@ -130,6 +131,17 @@ export function showRun(host, lesson) {
     instruction: el("p", { class: "instruction" }),
     facts: el("p"),
     knee: el("p"),
+    missed: el("ul", { class: "lines", "aria-label": text("run.missed") }),
+    compare: [
+      ["run.again", () => latest.lesson.knee.preset],
+      ["run.healthy", () => "healthy"],
+    ].map(([key, preset]) =>
+      el(
+        "button",
+        { type: "button", onclick: () => request("apply", { preset: preset(), add: false }) },
+        text(key),
+      ),
+    ),
     time: el("p", { class: "time-left" }),
     start: el(
       "button",
@@ -164,6 +176,8 @@ export function showRun(host, lesson) {
       view.instruction,
       view.facts,
       view.knee,
+      view.missed,
+      el("div", { class: "row" }, view.compare),
       view.time,
       el("div", { class: "row" }, view.start, view.next, view.end),
       view.why,
@@ -234,6 +248,22 @@ export function updateRun(lesson) {
   );
   showAnswers(lesson);
   showTime();
+  updateMissed();
+}
+
+/** Shows what was missed of a knee that is known now, and offers to feel it again beside a healthy one. */
+export function updateMissed() {
+  const { lesson, examination } = latest;
+  const revealed = Boolean(lesson?.began && lesson.knee && !lesson.ended);
+  for (const button of view.compare) {
+    button.hidden = !revealed;
+    button.disabled = controlReason() !== "";
+  }
+  const findings = revealed && lesson.blind ? (examination?.findings ?? []) : [];
+  const left = missed(findings).map(findingText);
+  const none = findings.length ? [text("run.missed-nothing")] : [];
+  const machine = findings.length && !examination.by_person;
+  setLines(view.missed, machine ? [text("run.missed-machine")] : left.length ? left : none);
 }
 
 function showAnswers(lesson) {

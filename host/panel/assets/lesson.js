@@ -3,7 +3,7 @@
 
 import { latest, on } from "./connection.js";
 import { byId } from "./dom.js";
-import { showRun, updateRun } from "./lesson-run.js";
+import { showRun, updateMissed, updateRun } from "./lesson-run.js";
 import { showResults } from "./lesson-results.js";
 import { showSetup, updateSetup } from "./lesson-setup.js";
 import { onLanguage } from "./strings.js";
@@ -33,6 +33,7 @@ export function startLesson() {
   on("hello", () => render(true));
   on("presets", () => shown === "setup" && render(true));
   on("lesson", () => render(false));
+  on("examination", () => shown === "run" && updateMissed());
   on("status", () => {
     const state = latest.status?.state;
     if (state === stateShown) return;

@@ -3,6 +3,7 @@
 import { connect, on } from "./connection.js";
 import { startControl } from "./control.js";
 import { byId } from "./dom.js";
+import { startExamination } from "./examination.js";
 import { startGuide } from "./guide.js";
 import { startKnee } from "./knee.js";
 import { startLesson } from "./lesson.js";
@@ -30,6 +31,7 @@ startControl();
 startLive();
 startGuide();
 startTarget();
+startExamination();
 startNotes();
 startKnee();
 startLesson();

@@ -172,8 +172,10 @@ function update() {
     control.disabled = why !== "";
   view.run.disabled = why !== "" || !target;
   setText(view.run, text(state?.running ? "target.stop" : "target.start"));
-  setText(view.why, why || (target ? "" : text("target.hint")));
-  const verdict = target && state.verdict ? state.verdict : "none";
+  const judged = state?.by_person !== false;
+  const about = target ? (judged ? "" : text("target.machine")) : text("target.hint");
+  setText(view.why, why || about);
+  const verdict = target && judged && state.verdict ? state.verdict : "none";
   view.word.dataset.verdict = verdict;
   setText(view.word, verdict === "none" ? "" : text(`verdict.${verdict}`));
   const scored = target && !state.running && Number.isFinite(state.score);

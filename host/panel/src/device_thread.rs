@@ -14,8 +14,10 @@
 //! | notes | `device_thread/notes.rs` |
 //! | the target of a hand, and its score | `device_thread/target.rs` |
 //! | the hand on a simulated leg | `device_thread/hand.rs` |
+//! | what is measured, and what was missed | `device_thread/examination.rs` |
 //! | status as a message | `device_thread/status.rs` |
 
+mod examination;
 mod hand;
 mod knee;
 mod lessons;
@@ -39,6 +41,7 @@ use crepitus_protocol::telemetry::{Block, SampleFlags};
 use crepitus_protocol::{Revision, Session, TICKS_PER_S, Values};
 use crepitus_recording::Samples;
 use crepitus_scene::preset::Preset;
+use examination::Examined;
 use hand::Hand;
 use lessons::Held;
 use notes::Note;
@@ -65,6 +68,9 @@ const BEAT_EVERY: Duration = Duration::from_millis(50);
 /// Interval of the status, and of a target's score.
 const STATUS_EVERY: Duration = Duration::from_millis(500);
 const SCORE_EVERY: Duration = Duration::from_millis(100);
+
+/// Interval of measures.
+const MEASURES_EVERY: Duration = Duration::from_millis(200);
 
 /// Timeout of a poll for events: the longest time that an order waits.
 const POLL: Duration = Duration::from_millis(2);
@@ -119,6 +125,7 @@ pub(crate) struct DeviceThread<'p, T> {
     frame_at: Instant,
     pace: Option<Pace>,
     score_at: Instant,
+    examined: Examined,
     recording: Option<Recorded>,
     /// Files that are being made.
     sealing: Vec<JoinHandle<Result<(), String>>>,
@@ -153,6 +160,8 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         client.subscribe()?;
         let now = Instant::now();
         let speed = Speed::new(client.now());
+        let by_person = hand.is_none();
+        let hand = hand.map(Hand::new);
         let mut device_thread = Self {
             client,
             program,
@@ -165,13 +174,14 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             committed,
             preset: None,
             envelope: Envelope::new(ROWS_PER_BIN),
-            hand: hand.map(Hand::new),
+            hand,
             now_s: 0.0,
             missing: 0,
             frame_number: 0,
             frame_at: now,
             pace: None,
             score_at: now,
+            examined: Examined::new(by_person, now),
             recording: None,
             sealing: Vec::new(),
             lesson: None,
@@ -189,6 +199,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         device_thread.publish_parameters();
         device_thread.publish_lesson();
         device_thread.publish_target();
+        device_thread.restart_examination();
         Ok(device_thread)
     }
 
@@ -241,6 +252,9 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         self.publish_frame();
         if self.pace.is_some() && self.score_at.elapsed() >= SCORE_EVERY {
             self.publish_target();
+        }
+        if self.examined.published_at.elapsed() >= MEASURES_EVERY {
+            self.publish_examination();
         }
         if self.status_is_due || self.status_at.elapsed() >= STATUS_EVERY {
             self.publish_status();
@@ -324,13 +338,17 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             self.announce_parameters(block.revision);
         }
         self.record(block);
+        let by_person = self.notice_mover();
         for row in self.samples.rows(block) {
             self.now_s = row.time_s;
             self.envelope.take(&row);
             if let Some(held) = &mut self.lesson {
                 held.take(row.flags.has(SampleFlags::ENERGISED));
             }
-            if let Some(pace) = &mut self.pace {
+            row.examined_by(&mut self.examined.examination);
+            if let Some(pace) = &mut self.pace
+                && by_person
+            {
                 pace.take(&row);
             }
             if let Some(hand) = &mut self.hand {
@@ -394,6 +412,10 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             Request::SavePreset(what) => self.save_preset(&what),
             Request::Target { target } => self.set_target(target),
             Request::Score { running } => self.set_scoring(running),
+            Request::Examine => {
+                self.restart_examination();
+                Ok(Value::Null)
+            }
             Request::Note { text } => self.add_note(&text),
             Request::Record { running, name } => self.set_recording(running, &name),
             Request::LessonBegin(what) => self.begin_lesson(&what),

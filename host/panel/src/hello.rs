@@ -2,6 +2,7 @@
 
 use crate::lesson::plans;
 use crate::live::{NAMED, STATES};
+use crepitus_knee::examination::Measure;
 use crepitus_model::render::effects::{IS_SYMPTOM, SPECS};
 use crepitus_protocol::coil::COIL_FAULTS;
 use crepitus_protocol::fault::FAULTS;
@@ -27,6 +28,10 @@ pub(crate) fn tables(source: &Value, sessions: Option<&Path>) -> Value {
         "groups": groups(),
         "states": STATES.map(|state| json!({ "effect": state.effect, "phase": state.phase })),
         "targets": NAMED,
+        "measures": Measure::ALL.map(|measure| {
+            let spec = measure.spec();
+            json!({ "name": measure.name(), "unit": spec.unit, "digits": spec.digits })
+        }),
         "faults": FAULTS.iter().map(|fault| json!({
             "code": fault.fault as u8,
             "name": fault.name,

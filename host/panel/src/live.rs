@@ -14,11 +14,10 @@
 //! | the lowest and highest value of a time | `envelope.rs` |
 //! | the names of the states in a bin | [`STATES`] |
 //! | target speeds by name | `target.rs` |
-//! | how well a hand keeps to one | `pace.rs`, `strokes.rs` |
+//! | how well a hand keeps to one | `pace.rs`; strokes are those of [`crepitus_knee::examination`] |
 
 mod envelope;
 mod pace;
-mod strokes;
 mod target;
 
 pub use crepitus_model::render::effects::STATES;

@@ -69,6 +69,8 @@ pub(crate) enum Request {
     Target { target: Option<AimAt> },
     /// Begin or end a score.
     Score { running: bool },
+    /// Begin the examination again.
+    Examine,
     /// Note something on the time line.
     Note { text: String },
     /// Begin or end a recording.

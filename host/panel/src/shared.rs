@@ -50,6 +50,7 @@ pub(crate) struct Latest {
     pub(crate) parameters: Utf8Bytes,
     pub(crate) presets: Utf8Bytes,
     pub(crate) target: Utf8Bytes,
+    pub(crate) examination: Utf8Bytes,
     pub(crate) lesson: Utf8Bytes,
     /// All so far.
     pub(crate) notes: Vec<Utf8Bytes>,
@@ -57,12 +58,13 @@ pub(crate) struct Latest {
 
 impl Latest {
     /// All but the notes.
-    pub(crate) fn messages(&self) -> [&Utf8Bytes; 5] {
+    pub(crate) fn messages(&self) -> [&Utf8Bytes; 6] {
         [
             &self.status,
             &self.parameters,
             &self.presets,
             &self.target,
+            &self.examination,
             &self.lesson,
         ]
     }

@@ -35,6 +35,7 @@ impl Strings {
 mod tests {
     use super::*;
     use crate::live::STATES;
+    use crepitus_knee::examination::{Measure, Step};
     use crepitus_protocol::parameters::PARAMETERS;
     use crepitus_scene::preset::Disorder;
     use std::collections::BTreeSet;
@@ -45,7 +46,7 @@ mod tests {
         texts.keys().filter(is_own).cloned().collect()
     }
 
-    /// A group, state or disorder without a text would be shown by its identifier.
+    /// What has no text would be shown by its identifier.
     #[test]
     fn what_a_device_has_is_named() {
         let known = keys("en");
@@ -54,7 +55,10 @@ mod tests {
             .iter()
             .map(|state| format!("state.{}.{}", state.effect, state.phase));
         let disorders = Disorder::ALL.map(|disorder| format!("disorder.{}", disorder.name()));
-        for key in groups.chain(states).chain(disorders) {
+        let measures = Measure::ALL.map(|measure| format!("measure.{}", measure.name()));
+        let steps = Step::ALL.map(|step| format!("step.{}", step.name()));
+        let named = groups.chain(states).chain(disorders);
+        for key in named.chain(measures).chain(steps) {
             assert!(known.contains(&key), "{key}");
         }
     }

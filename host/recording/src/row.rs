@@ -1,5 +1,6 @@
 //! A sample as a row.
 
+use crepitus_knee::Examination;
 use crepitus_model::render::effects::Phases;
 use crepitus_protocol::TICK_S;
 use crepitus_protocol::telemetry::SampleFlags;
@@ -80,6 +81,19 @@ impl Row {
         }
     }
 
+    /// Has an examination take the row, with the torque of the model, while the motor is driven: without
+    /// torque nobody examines a knee.
+    pub fn examined_by(&self, examination: &mut Examination) {
+        if self.flags.has(SampleFlags::ENERGISED) {
+            examination.take(
+                self.time_s,
+                self.angle_rad,
+                f64::from(self.omega_rad_s),
+                f64::from(self.model_torque_nm),
+            );
+        }
+    }
+
     /// Phase of the imaginary object: `stick`, `slip+`, `slip-`.
     pub fn phase(&self) -> &'static str {
         match self.flags.phase_sign() {
@@ -124,6 +138,26 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_knee::examination::Measure;
+
+    #[test]
+    fn a_leg_is_examined_while_the_motor_is_driven() {
+        let mut examination = Examination::default();
+        for tick in 0..40_000 {
+            let is_driven = tick >= 20_000;
+            let row = Row {
+                tick,
+                time_s: seconds(tick),
+                angle_rad: seconds(tick),
+                omega_rad_s: 1.0,
+                flags: SampleFlags::default().with(SampleFlags::ENERGISED, is_driven),
+                ..Row::default()
+            };
+            row.examined_by(&mut examination);
+        }
+        let range_deg = examination.measure(Measure::Range).unwrap();
+        assert!((range_deg - 1_f64.to_degrees()).abs() < 0.01, "{range_deg}");
+    }
 
     #[test]
     fn a_restart_is_no_missing_samples_whether_ticks_go_back_or_not() {

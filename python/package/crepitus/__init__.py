@@ -17,6 +17,7 @@ what each effect does           :func:`effects`
 a joint in a loop of your own   :class:`Joint`
 a device, real or simulated     :class:`Device`, :func:`parameters`
 recordings                      :func:`read_recording`, :class:`Recording`
+measures of an examination      :func:`examination`
 ==============================  ==================================================
 
 Names end in their unit: ``t_s`` is in s, ``angle_rad`` in rad, ``omega_rad_s`` in rad/s,
@@ -26,7 +27,7 @@ Crepitus is a research and education prototype, not a medical device.
 """
 
 from ._crepitus import Scene, __version__
-from ._device import Device, Info, Recording, Stream, parameters, read_recording
+from ._device import Device, Info, Recording, Stream, examination, parameters, read_recording
 from ._errors import CrepitusError, DeviceError, RunError, SceneError
 from ._joint import Joint
 from ._run import Run, reference, run
@@ -49,6 +50,7 @@ __all__ = [
     "__version__",
     "accuracy",
     "effects",
+    "examination",
     "parameters",
     "presets",
     "read_recording",

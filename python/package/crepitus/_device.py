@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Any
 
+import numpy as np
+
 from . import _crepitus
 from ._crepitus import Scene
 from ._run import _scene, _whole
@@ -63,6 +65,19 @@ def read_recording(path: str | os.PathLike[str]) -> Recording:
     return Recording(
         samples, about["books"], about["metadata"], about["complete"], about["warnings"]
     )
+
+
+def examination(of: Recording | Stream) -> dict[str, float]:
+    """Measures of an examination, of the samples with the motor on; NaN where there is none.
+
+    They are those of the panel and of ``crepitus report``, with the model's torque: ``range_deg``,
+    ``flexion_deg``, ``deficit_deg``, ``peak_speed_deg_s``, ``catch_deg`` (R1), ``slow_end_deg`` (R2),
+    ``dynamic_deg``, ``beats``, ``beat_rate_hz``, ``unsteadiness_percent``, ``smoothness``.
+    """
+    is_on = of.samples["limit"] != "not-armed"
+    names = ["t_s", "angle_rad", "omega_rad_s", "model_torque_nm"]
+    columns = [of.samples[name][is_on].astype(np.float64) for name in names]
+    return _crepitus.examination(np.column_stack(columns))
 
 
 def parameters() -> dict[str, dict[str, Any]]:

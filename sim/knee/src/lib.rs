@@ -13,6 +13,7 @@
 //! | the hand: where it wants to be, and how hard it pulls | [`hand`] |
 //! | the leg of a page | [`leg`] |
 //! | the drive's torque from counts, and how its parameters change | [`pipeline`] |
+//! | what an examination measures, its steps, and what was missed | [`examination`] |
 //! | all of that together, a frame at a time | [`page`] |
 //! | what a page calls | `page/exports.rs`, compiled for WebAssembly alone |
 //!
@@ -40,11 +41,13 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod examination;
 pub mod hand;
 pub mod leg;
 pub mod page;
 pub mod pipeline;
 
+pub use examination::Examination;
 pub use hand::{Hand, HandPath, HandState};
 pub use leg::Leg;
 pub use page::Page;

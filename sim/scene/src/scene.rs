@@ -36,6 +36,10 @@ pub const SCENE_VERSION: u32 = 1;
 
 /// A validated scene.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "keys of a file, and what a simulated device does with it"
+)]
 pub struct Scene {
     /// The file that it was read from.
     pub file: PathBuf,
@@ -52,6 +56,9 @@ pub struct Scene {
     /// Whether on a simulated device the leg begins straight, at 0°, where the zero is set, and is led to the
     /// motion's start. No key of a file, and nothing to a run.
     pub begins_straight: bool,
+    /// Whether on a simulated device an examiner moves the leg who chooses the motion by the knee that the device
+    /// renders, where the scene's is one of strokes. No key of a file, and nothing to a run.
+    pub has_examiner: bool,
     /// Seed of everything random, if the scene has any.
     pub seed: Option<u64>,
     /// Solver that integrates the joint.
@@ -180,6 +187,7 @@ impl Scene {
             motion_kind: motion.kind,
             motion: motion.motion,
             begins_straight: false,
+            has_examiner: false,
             seed: motion.seed,
             solver,
             is_device,

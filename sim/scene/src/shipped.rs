@@ -4,6 +4,7 @@ use crate::document::text_of;
 use crate::error::{Origin, SceneError};
 use crate::scene::{Overrides, Scene};
 use crate::similar::{question, similar};
+use crepitus_plant::effects::hand;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -206,6 +207,19 @@ pub fn scene(path: &Path, overrides: &Overrides) -> Result<Scene, SceneError> {
     Source::find(path)?.scene(overrides)
 }
 
+/// The scene of a simulated device that nobody gives another: `passive-examination`, with an examiner who
+/// [chooses the motion](Scene::has_examiner) and moves the leg as he or she likes. The arm of the scene gives way: it
+/// is for slow motion.
+///
+/// # Errors
+/// None, as the scene ships.
+pub fn examination() -> Result<Scene, SceneError> {
+    let mut scene = scene(Path::new("passive-examination"), &Overrides::default())?;
+    scene.has_examiner = true;
+    (scene.listed).retain(|listed| listed.effect.name != hand::EFFECT.name);
+    Ok(scene)
+}
+
 /// The most similar name of a scene that ships.
 pub fn similar_name(given: &str) -> Option<&'static str> {
     similar(SHIPPED.iter().map(|scene| scene.name), given)
@@ -224,6 +238,17 @@ fn whole(file: &Path, message: impl Into<String>) -> SceneError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::MotionKind;
+
+    #[test]
+    fn the_examiner_of_a_simulated_device_strokes_a_leg_that_is_held() {
+        let plain = scene(Path::new("passive-examination"), &Overrides::default()).unwrap();
+        assert!(!plain.has_examiner && plain.has(hand::EFFECT.name));
+        let examined = examination().unwrap();
+        assert!(examined.has_examiner && examined.is_held());
+        assert_eq!(examined.motion_kind, MotionKind::Strokes);
+        assert!(!examined.has(hand::EFFECT.name) && examined.has("crepitus"));
+    }
 
     #[test]
     fn every_scene_in_the_folder_ships_and_reads() {

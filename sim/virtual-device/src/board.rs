@@ -24,7 +24,7 @@ use crepitus_device::drive::{self, Drive};
 use crepitus_device::self_test::SelfTest;
 use crepitus_protocol::crash::Head;
 use crepitus_protocol::management::{ResetCause, Role};
-use crepitus_protocol::{Revision, TICK_US, ValueError, Values, schema};
+use crepitus_protocol::{DeviceSettings, Revision, TICK_US, ValueError, Values, schema};
 use crepitus_scene::Scene;
 use starts::identity;
 
@@ -104,6 +104,8 @@ pub struct Board {
     drive: Drive,
     comms: Comms,
     leg: Leg,
+    /// Revision of the knee that the leg's examiner knows.
+    examined: Option<Revision>,
     /// Comms to drive.
     down: Wire,
     /// Drive to comms.
@@ -180,6 +182,7 @@ impl Board {
             drive,
             comms,
             leg,
+            examined: None,
             down: Wire::new(start.seed),
             up: Wire::new(start.seed ^ 0x9e37_79b9_7f4a_7c15),
             drive_line: EnableLine::default(),
@@ -237,7 +240,21 @@ impl Board {
                 self.reset(Controller::Drive, ResetCause::Requested);
             }
         }
+        self.tell_examiner();
         self.tick += 1;
+    }
+
+    /// Tells the leg's examiner which knee the drive renders, once it has changed.
+    fn tell_examiner(&mut self) {
+        let revision = self.drive.revision();
+        if self.examined == Some(revision) {
+            return;
+        }
+        if let Some(Ok(settings)) = self.drive.values().map(DeviceSettings::of) {
+            self.examined = Some(revision);
+            self.leg
+                .examine(&settings.effects, settings.crepitus.is_some());
+        }
     }
 
     fn command(&mut self) {

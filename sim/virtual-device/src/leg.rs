@@ -22,12 +22,16 @@
 //! within a tenth of a second, and rests.
 //!
 //! A leg that [begins straight](Scene::begins_straight) is at 0° until the motor is driven, and is led
-//! to the motion's start before that begins. A [hand](HandInput) can take it from the motion, and give it back.
+//! to the motion's start before that begins. An [examiner](Scene::has_examiner) chooses the motion by the knee. A
+//! [hand](HandInput) can take the leg from either, and give it back.
 
 mod coil;
+mod examiner;
 mod hand;
 mod hand_input;
 mod lead_in;
+mod movement;
+mod mover;
 mod sensors;
 #[cfg(test)]
 mod tests;
@@ -38,15 +42,15 @@ pub use hand_input::HandInput;
 pub use sensors::{CurrentPath, CurrentSensor, EncoderWiring, SlowSensors};
 
 use coil::CoilDriver;
-use crepitus_knee::HandPath;
 use crepitus_model::Sense;
+use crepitus_model::render::effects::EffectSettings;
 use crepitus_plant::chain::Body;
 use crepitus_plant::effects::motor::bridge::Bridge;
 use crepitus_plant::effects::motor::{self, MotorNumbers};
 use crepitus_plant::energy_balance::EnergyBalance;
 use crepitus_plant::{Motion, Plant};
-use crepitus_scene::{Scene, Walk};
-use lead_in::LeadIn;
+use crepitus_scene::Scene;
+use mover::Mover;
 use sensors::Counter;
 
 /// Tick of the drive, s.
@@ -58,19 +62,8 @@ const DISCHARGE_S: f64 = 0.1;
 /// A leg with brace, gear and motor.
 pub struct Leg {
     plant: Plant<Bridge>,
-    scene: Scene,
-    walk: Walk<Motion>,
-    /// Lead-in before the scene's motion, if there is one.
-    lead_in: Option<LeadIn>,
-    /// Path of a hand that has the leg; without one the leg goes as the walk does.
-    path: Option<HandPath>,
-    input: HandInput,
-    /// Target of the hand that was executed last.
-    target_rad: Option<f64>,
-    /// Time of the motions before this one, s.
-    before_s: f64,
+    mover: Mover,
     steps_per_half: u32,
-    step_s: f64,
     counter: Counter,
     /// Current sensors of the loop, and of the monitor.
     current_sensors: [CurrentSensor; 2],
@@ -91,33 +84,25 @@ impl Leg {
     /// The leg of a scene at the start of its motion, or straight. The bridge is open, the
     /// counter zero, whatever the angle.
     pub fn new(scene: &Scene) -> Self {
-        let lead_in = LeadIn::of(scene);
-        let straight = lead_in.as_ref().map(|_| Scene {
+        // A scene's steps are those of a tick.
+        let steps_per_half = scene.substeps.div_ceil(2);
+        let step_s = TICK_S / (2.0 * f64::from(steps_per_half));
+        let mover = Mover::new(scene, step_s);
+        let straight = mover.leads().then(|| Scene {
             motion: Motion::rest(0.0),
             ..scene.clone()
         });
         let at_first = straight.as_ref().unwrap_or(scene);
-        // A scene's steps are those of a tick.
-        let steps_per_half = scene.substeps.div_ceil(2);
-        let step_s = TICK_S / (2.0 * f64::from(steps_per_half));
         let motor = MotorNumbers::of(&scene.given(&motor::EFFECT));
         let plant = at_first.assemble_with(TICK_S, Bridge::new(motor, step_s));
+        mover.input().report(None, plant.shaft().angle_rad);
         let encoder = scene.encoder.unwrap_or_default();
-        let input = HandInput::default();
-        input.report(None, plant.shaft().angle_rad);
         Self {
             counter: Counter::new(&encoder, plant.shaft().angle_rad),
             begun: (plant.felt_nms(), 0.0),
             plant,
-            walk: Walk::new(at_first.endless_motion(), step_s),
-            scene: scene.clone(),
-            lead_in,
-            path: None,
-            input,
-            target_rad: None,
-            before_s: 0.0,
+            mover,
             steps_per_half,
-            step_s,
             current_sensors: [CurrentSensor::Right; 2],
             slow_sensors: SlowSensors::default(),
             capacitors_v: motor.supply_v,
@@ -138,9 +123,9 @@ impl Leg {
     /// The second half of a tick.
     pub fn second_half(&mut self) {
         self.half();
-        self.lead();
         let felt_nms = self.plant.felt_nms();
-        self.follow_hand();
+        let is_driven = matches!(self.terminals, Terminals::Driven(_));
+        self.mover.tick(is_driven, &mut self.plant);
         self.capacitors_v = if self.is_supplied {
             self.supply_v()
         } else {
@@ -155,25 +140,20 @@ impl Leg {
 
     fn half(&mut self) {
         for _ in 0..self.steps_per_half {
-            if let Some(path) = &mut self.path {
-                self.plant.advance(&hand::step(path, self.step_s));
-            } else {
-                self.walk.advance(&mut self.plant);
-            }
+            self.mover.advance(&mut self.plant);
         }
         self.counter.turn_to(self.plant.shaft().angle_rad);
     }
 
-    /// Goes on with another motion, if one begins with the next tick.
-    fn lead(&mut self) {
-        let Some(lead_in) = &mut self.lead_in else {
-            return;
-        };
-        let is_driven = matches!(self.terminals, Terminals::Driven(_));
-        if let Some(motion) = lead_in.tick(is_driven) {
-            self.before_s += self.walk.time_s();
-            self.walk.turn_to(motion);
-        }
+    /// Input of a hand that moves the leg.
+    pub fn hand(&self) -> HandInput {
+        self.mover.input().clone()
+    }
+
+    /// Tells the examiner, if there is one, which knee it is: its effects, and whether the imaginary object is on. For
+    /// another knee he or she stops, and begins another examination.
+    pub fn examine(&mut self, effects: &EffectSettings, grates: bool) {
+        self.mover.examine(effects, grates);
     }
 
     /// Releases the leg: from now on nobody holds it, whatever the scene's motion.
@@ -264,7 +244,7 @@ impl Leg {
 
     /// Time since the start of the motion, s; what leads to it included.
     pub fn time_s(&self) -> f64 {
-        self.before_s + self.walk.time_s()
+        self.mover.time_s()
     }
 
     /// The motor's shaft, referred to the joint.

@@ -72,6 +72,8 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     client.subscribe().map_err(failure)?;
     let target = arguments.target.as_deref().and_then(Target::find);
     let mut monitor = Monitor::new(client.port(), arguments.arming, target);
+    // Its examiner moves the leg, and is not to be judged.
+    monitor.view.is_simulated = matches!(client.transport_mut(), Line::Simulated(_));
     let end = follow(
         &mut client,
         arguments.for_s,
@@ -203,7 +205,10 @@ impl Follower for Monitor {
         }
         for row in self.samples.rows(block) {
             self.envelope.take(&row);
-            if let Some(pace) = &mut self.pace {
+            row.examined_by(&mut self.view.examination);
+            if let Some(pace) = &mut self.pace
+                && !self.view.is_simulated
+            {
                 pace.take(&row);
             }
         }

@@ -6,7 +6,7 @@ mod program;
 use crate::cli::DeviceArguments;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
-use crate::line::{Line, failure, open_in_real_time};
+use crate::line::{Line, failure, open_examined};
 use clap::Args;
 use crepitus_client::Client;
 use crepitus_files::output::temporary_in;
@@ -80,9 +80,9 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         panel.replay(interrupt::requested);
         return Ok(());
     }
-    let mut client = Client::connect(open_in_real_time(&arguments.device)?).map_err(failure)?;
+    let mut client = Client::connect(open_examined(&arguments.device)?).map_err(failure)?;
     if let Line::Simulated(_) = client.transport_mut() {
-        // A simulated leg begins at the scene's angle and moves at once: none can hold it straight.
+        // The leg is straight until the device is armed, but for one that nobody holds.
         client.zero().map_err(failure)?;
     }
     let source = Source::Device {

@@ -49,6 +49,11 @@ impl Hand {
         self.newest = Some((row.angle_rad, row.omega_rad_s));
     }
 
+    /// Returns whether it has the leg.
+    pub(super) fn has_leg(&self) -> bool {
+        self.input.hand_rad().is_some()
+    }
+
     /// Angle of the hand from the device's zero, rad; `None` while it does not have the leg.
     pub(super) fn angle_rad(&self) -> Option<f64> {
         Some(self.input.hand_rad()? - self.zero_rad?)

@@ -20,6 +20,7 @@ impl<T: Transport> DeviceThread<'_, T> {
         self.check_open()?;
         let preset = self.preset_of(name)?;
         self.commit(|now| with_preset(now, &preset, add))?;
+        self.restart_examination();
         self.preset = (!add).then(|| (name.to_owned(), self.committed));
         self.publish_parameters();
         self.warn_of_caps();
@@ -121,8 +122,10 @@ impl<T: Transport> DeviceThread<'_, T> {
     /// Reads the parameters that are committed.
     pub(super) fn reload_parameters(&mut self) {
         if let Ok((revision, values)) = self.client.parameters() {
-            (self.committed, self.values) = (revision, values);
+            let before = std::mem::replace(&mut self.values, values);
+            self.committed = revision;
             self.publish_parameters();
+            self.examine(&before);
         }
     }
 

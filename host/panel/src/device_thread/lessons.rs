@@ -160,6 +160,7 @@ impl<T: Transport> DeviceThread<'_, T> {
             self.pace = Some(pace);
             self.publish_target();
         }
+        self.restart_examination();
         self.note_trial(trial);
         self.publish_parameters();
         self.changed();

@@ -42,12 +42,13 @@ impl<T: Transport> DeviceThread<'_, T> {
     pub(super) fn publish_target(&mut self) {
         self.score_at = Instant::now();
         let target = match &self.pace {
-            None => json!({ "target": Value::Null }),
+            None => json!({ "target": Value::Null, "by_person": self.examined.by_person }),
             Some(pace) => {
                 let mut target = json!(pace.score());
                 target["target"] = json!(pace.target());
                 target["running"] = json!(pace.is_scoring());
                 target["verdict"] = json!(pace.verdict());
+                target["by_person"] = json!(self.examined.by_person);
                 target
             }
         };

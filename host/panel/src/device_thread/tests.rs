@@ -1,3 +1,5 @@
+mod examination;
+
 use super::recording::extension;
 use super::{DeviceThread, Program};
 use crate::control::{Holder, Page};

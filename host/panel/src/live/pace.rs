@@ -5,8 +5,8 @@
 //! counts strokes: those whose middle half had the right speed, or, with a metronome,
 //! beats at which the leg turned back.
 
-use crate::live::strokes::Strokes;
 use crate::live::target::{Aim, Target};
+use crepitus_knee::examination::Strokes;
 use crepitus_recording::Row;
 use serde::Serialize;
 
@@ -16,6 +16,9 @@ const REST_DEG_PER_S: f64 = 3.0;
 /// Time constant of the speed that is judged, s: shorter than a reaction, longer than a
 /// stick-slip cycle.
 const SMOOTHING_S: f64 = 0.05;
+
+/// Longest time between two samples, s: after a longer one nobody knows how the leg was moved meanwhile.
+const GAP_S: f64 = 0.1;
 
 /// A turn this far from a beat, in its periods, is not at it.
 const BEAT_TOLERANCE: f64 = 0.15;
@@ -124,6 +127,7 @@ impl Pace {
     pub fn take(&mut self, row: &Row) {
         let now_s = row.time_s;
         let step_s = self.last_s.map_or(0.0, |last_s| now_s - last_s);
+        let step_s = if step_s > GAP_S { 0.0 } else { step_s };
         self.last_s = Some(now_s);
         let speed = f64::from(row.omega_rad_s).abs().to_degrees();
         if !speed.is_finite() {
@@ -288,6 +292,21 @@ mod tests {
         let score = pace.score();
         assert_eq!((score.score, score.share_right), (None, None));
         assert_eq!(pace.verdict(), Verdict::Rest);
+    }
+
+    /// As where another hand has had the leg meanwhile.
+    #[test]
+    fn a_gap_is_no_way_that_was_travelled() {
+        let mut pace = Pace::new(Target::find("slow").unwrap());
+        pace.set_scoring(true);
+        for (time_s, deg_per_s) in [(0.0, 30.0_f32), (0.1, 30.0), (60.0, 300.0), (60.1, 30.0)] {
+            pace.take(&Row {
+                time_s,
+                omega_rad_s: deg_per_s.to_radians(),
+                ..Row::default()
+            });
+        }
+        assert_eq!(pace.score().share_right, Some(1.0));
     }
 
     #[test]

@@ -15,12 +15,13 @@
 //! tenth of a second, in which it grows evenly.
 //!
 //! The way back from a hand that has moved the leg is such a stroke, too. If the leg moves there, it is first
-//! slowed down to rest, as evenly and as long.
+//! slowed down to rest.
 
 use super::TICK_S;
+use super::movement::{stop, stroke, whole_ticks};
 use crepitus_plant::Motion;
 use crepitus_plant::chain::Body;
-use crepitus_plant::motion::{STOP_S, Strokes};
+use crepitus_plant::motion::STOP_S;
 use crepitus_plant::piece::{Curve, Piece};
 use crepitus_scene::Scene;
 
@@ -79,6 +80,11 @@ impl LeadIn {
         (lead_in, way)
     }
 
+    /// Returns whether the leg is there.
+    pub(super) fn is_over(&self) -> bool {
+        matches!(self.stage, Stage::Over)
+    }
+
     /// A tick is over, in which the motor was driven or not. Returns the motion that begins
     /// with the next one, if another does.
     pub(super) fn tick(&mut self, is_driven: bool) -> Option<Motion> {
@@ -108,74 +114,43 @@ impl LeadIn {
 
 /// The motion from one angle and velocity to another, and its length in ticks.
 fn way(from: Body, to: Body) -> (Motion, u32) {
-    let even_s = |omega_rad_s: f64| if omega_rad_s == 0.0 { 0.0 } else { STOP_S };
-    let (brake_s, run_up_s) = (even_s(from.omega_rad_s), even_s(to.omega_rad_s));
-    let rest_rad = from.angle_rad + 0.5 * from.omega_rad_s * brake_s;
+    let (mut pieces, mut ticks) = (Vec::new(), 0);
+    let mut add = |piece: Piece, length: u32| {
+        let start_s = f64::from(ticks) * TICK_S;
+        ticks += length;
+        let end_s = f64::from(ticks) * TICK_S;
+        pieces.push(Piece {
+            start_s,
+            end_s,
+            ..piece
+        });
+    };
+    let mut rest_rad = from.angle_rad;
+    if from.omega_rad_s != 0.0 {
+        let (slows, length, rests_at_rad) = stop(from);
+        add(slows, length);
+        rest_rad = rests_at_rad;
+    }
+    let run_up_s = if to.omega_rad_s == 0.0 { 0.0 } else { STOP_S };
     let before_rad = to.angle_rad - 0.5 * to.omega_rad_s * run_up_s;
-    let piece = |start_s: f64, end_s: f64, polynomial: [f64; 6]| Piece {
-        start_s,
-        end_s,
+    let (leads, length) = stroke(rest_rad, before_rad, SPEED_RAD_S);
+    add(leads, length);
+    let curve = |polynomial| Piece {
+        start_s: 0.0,
+        end_s: f64::INFINITY,
         jump: false,
         curve: Curve::Polynomial(polynomial),
     };
-    let (mut pieces, mut ticks) = (Vec::new(), 0);
-    let mut start_s = 0.0;
-    if brake_s > 0.0 {
-        ticks += whole_ticks(brake_s);
-        let end_s = f64::from(ticks) * TICK_S;
-        let Body {
-            angle_rad,
-            omega_rad_s,
-        } = from;
-        let half_slope = -0.5 * omega_rad_s / brake_s;
-        let polynomial = [angle_rad, omega_rad_s, half_slope, 0.0, 0.0, 0.0];
-        pieces.push(piece(start_s, end_s, polynomial));
-        start_s = end_s;
-    }
-    let stroke = Strokes {
-        from_rad: rest_rad,
-        to_rad: before_rad,
-        peak_speed_rad_s: SPEED_RAD_S,
-        pause_s: 0.0,
-    };
-    let stroke_ticks = whole_ticks(stroke.stroke_s());
-    let stroke_s = f64::from(stroke_ticks) * TICK_S;
-    // φ = φ₀ + Δ·(10σ³ − 15σ⁴ + 6σ⁵), as a stroke of a scene, but for whole ticks.
-    let (travel_rad, cube) = (before_rad - rest_rad, stroke_s * stroke_s * stroke_s);
-    ticks += stroke_ticks;
-    let end_s = f64::from(ticks) * TICK_S;
-    let polynomial = [
-        rest_rad,
-        0.0,
-        0.0,
-        10.0 * travel_rad / cube,
-        -15.0 * travel_rad / (cube * stroke_s),
-        6.0 * travel_rad / (cube * stroke_s * stroke_s),
-    ];
-    pieces.push(piece(start_s, end_s, polynomial));
-    start_s = end_s;
     if run_up_s > 0.0 {
-        ticks += whole_ticks(run_up_s);
-        let end_s = f64::from(ticks) * TICK_S;
         let half_slope = 0.5 * to.omega_rad_s / run_up_s;
-        let polynomial = [before_rad, 0.0, half_slope, 0.0, 0.0, 0.0];
-        pieces.push(piece(start_s, end_s, polynomial));
-        start_s = end_s;
+        let runs = curve([before_rad, 0.0, half_slope, 0.0, 0.0, 0.0]);
+        add(runs, whole_ticks(run_up_s));
     }
-    let straight_on = [to.angle_rad, to.omega_rad_s, 0.0, 0.0, 0.0, 0.0];
-    pieces.push(piece(start_s, f64::INFINITY, straight_on));
+    pieces.push(Piece {
+        start_s: f64::from(ticks) * TICK_S,
+        ..curve([to.angle_rad, to.omega_rad_s, 0.0, 0.0, 0.0, 0.0])
+    });
     (Motion::Sequence(pieces), ticks)
-}
-
-/// The ticks in which a time is over, at least one.
-fn whole_ticks(seconds: f64) -> u32 {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a cast from float saturates, and no time is negative"
-    )]
-    let ticks = (seconds / TICK_S - 1e-6).ceil() as u32;
-    ticks.max(1)
 }
 
 #[cfg(test)]

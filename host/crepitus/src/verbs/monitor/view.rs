@@ -1,7 +1,10 @@
 //! View of the monitor: its content and its drawing.
 
+use crate::measures::shown;
 use crepitus_client::Accounting;
 use crepitus_client::connection::device_text;
+use crepitus_knee::Examination;
+use crepitus_knee::examination::Measure;
 use crepitus_panel::live::{Aim, Bin, Marks, Pace, STATES, Verdict};
 use crepitus_plant::Extremes;
 use crepitus_protocol::State;
@@ -59,6 +62,9 @@ pub(super) struct View {
     pub(super) status: Option<Status>,
     pub(super) holder: Option<String>,
     pub(super) counts: Option<Counts>,
+    pub(super) examination: Examination,
+    /// Whether a simulated examiner moves the leg.
+    pub(super) is_simulated: bool,
     pub(super) marks: Vec<Mark>,
     messages: VecDeque<String>,
 }
@@ -111,8 +117,9 @@ impl View {
     pub(super) fn draw(&self, frame: &mut Frame<'_>, pace: Option<&Pace>) {
         let faults = self.faults();
         let warnings = u16::try_from(faults.len() + self.messages.len()).unwrap_or(0);
-        let [head, numbers, charts, warned, help] = Layout::vertical([
+        let [head, numbers, measures, charts, warned, help] = Layout::vertical([
             Constraint::Length(1),
+            Constraint::Length(2),
             Constraint::Length(2),
             Constraint::Min(6),
             Constraint::Length(warnings * 2),
@@ -121,9 +128,11 @@ impl View {
         .areas(frame.area());
         frame.render_widget(self.head(), head);
         frame.render_widget(
-            Paragraph::new(vec![self.numbers(), Self::judged(pace)]),
+            Paragraph::new(vec![self.numbers(), self.judged(pace)]),
             numbers,
         );
+        let measured = Paragraph::new(self.measured()).wrap(Wrap { trim: true });
+        frame.render_widget(measured, measures);
         let [torque, speed, angle] = Layout::vertical([Constraint::Fill(1); 3]).areas(charts);
         let band = pace.and_then(|pace| match pace.target().aim {
             Aim::Speed {
@@ -199,10 +208,24 @@ impl View {
         .bold()
     }
 
-    fn judged(pace: Option<&Pace>) -> Line<'static> {
+    /// Measures of the examination, as far as there are any.
+    fn measured(&self) -> String {
+        let measures = Measure::ALL.into_iter().filter_map(|measure| {
+            let value = self.examination.measure(measure)?;
+            Some(format!("{} {}", measure.name(), shown(measure.spec(), value)))
+        });
+        measures.collect::<Vec<_>>().join("   ")
+    }
+
+    fn judged(&self, pace: Option<&Pace>) -> Line<'static> {
         let Some(pace) = pace else {
             return Line::from("no target: t chooses one");
         };
+        if self.is_simulated {
+            let name = pace.target().name;
+            let text = format!("target {name}: not judged, a simulated examiner moves the leg");
+            return Line::from(text);
+        }
         let (word, colour) = match pace.verdict() {
             Verdict::Rest => ("at rest", Color::Gray),
             Verdict::Slow => ("too slow", Color::Yellow),
@@ -397,6 +420,25 @@ mod tests {
                 time_s: 1.995
             }]
         );
+    }
+
+    #[test]
+    fn it_shows_what_was_measured_and_judges_no_simulated_examiner() {
+        let mut view = examined(0.1);
+        for tick in 0..60_000 {
+            let time_s = f64::from(tick) * 5e-5;
+            let angle_rad = 0.6 - 0.5 * time_s.cos();
+            let omega_rad_s = 0.5 * time_s.sin();
+            (view.examination).take(time_s, angle_rad, omega_rad_s, 0.0);
+        }
+        let pace = Pace::new(Target::find("medium").unwrap());
+        let text = drawn(&view, Some(&pace), 100, 30);
+        for expected in ["range 57°", "peak-speed 29 °/s", "target medium: at rest"] {
+            assert!(text.contains(expected), "{expected}:\n{text}");
+        }
+        view.is_simulated = true;
+        let text = drawn(&view, Some(&pace), 100, 30);
+        assert!(text.contains("medium: not judged"), "{text}");
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! The tables of a recording's report.
 
+use crate::measures::shown as shown_measure;
 use crate::sections::{counts, section, torque_section};
+use crepitus_knee::examination::Measure;
 use crepitus_pages::plot::number::{count, rounded};
 use crepitus_pages::recorded::RecordingSummary;
 use crepitus_pages::report::Section;
@@ -26,6 +28,7 @@ pub(super) fn sections(
         s.torque
             .map(|t| torque_section("Torque commanded to the motor while armed", &t)),
     );
+    sections.extend(examination(s));
     if !s.limited_s.is_empty() {
         let rows = s
             .limited_s
@@ -37,6 +40,18 @@ pub(super) fn sections(
         sections.push(parameters(set, (n > 0).then_some(*at_s)));
     }
     sections
+}
+
+/// What a physiotherapist would note; nothing of a leg that was not moved.
+fn examination(s: &RecordingSummary) -> Option<Section> {
+    let rows: Vec<_> = (Measure::ALL.iter())
+        .filter_map(|measure| {
+            let spec = measure.spec();
+            let value = shown_measure(spec, *s.examination.get(spec.key)?);
+            Some((spec.label, format!("{value}: {}", spec.meaning)))
+        })
+        .collect();
+    (!rows.is_empty()).then(|| section("Examination, while the motor was on", rows))
 }
 
 /// Sentences on what was felt, and on whether all of it is here.

@@ -1,5 +1,7 @@
 //! The summary of a recording.
 
+use crepitus_knee::Examination;
+use crepitus_knee::examination::Measure;
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{LimitReason, TICK_S};
 use crepitus_recording::Controller;
@@ -56,6 +58,9 @@ pub struct RecordingSummary {
     pub model_torque: Option<TorqueSummary>,
     /// Torque commanded to the motor while armed.
     pub torque: Option<TorqueSummary>,
+    /// Measures of the examination by their [keys](crepitus_knee::examination::MeasureSpec::key): of all the
+    /// time in which the motor was driven. Those that there are.
+    pub examination: BTreeMap<&'static str, f64>,
     /// Armed time in which each reason limited the torque, s.
     pub limited_s: BTreeMap<&'static str, f64>,
     /// Samples that were received and whose count of the encoder the drive had rejected.
@@ -82,6 +87,7 @@ pub(super) struct Tally {
     breaks: u64,
     sticks: u64,
     fastest_rad_s: f64,
+    examination: Examination,
     limited: BTreeMap<&'static str, u64>,
     lost: u64,
     late: u64,
@@ -96,6 +102,7 @@ impl Tally {
         self.fastest_rad_s = self.fastest_rad_s.max(f64::from(row.omega_rad_s.abs()));
         self.lost += u64::from(flags.has(SampleFlags::LOST));
         self.late += u64::from(flags.has(SampleFlags::LATE));
+        row.examined_by(&mut self.examination);
         if flags.limit() == LimitReason::NotArmed {
             return;
         }
@@ -151,6 +158,13 @@ impl Tally {
             fastest_rad_s: self.fastest_rad_s,
             model_torque: torque(self.model),
             torque: torque(self.commanded),
+            examination: Measure::ALL
+                .into_iter()
+                .filter_map(|measure| {
+                    let value = self.examination.measure(measure)?;
+                    Some((measure.spec().key, value))
+                })
+                .collect(),
             limited_s: self
                 .limited
                 .into_iter()

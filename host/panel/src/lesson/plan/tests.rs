@@ -1,11 +1,16 @@
 use super::*;
 use crate::lesson::finding::Finding;
 use crate::lesson::plans;
+use crate::live::{Aim, Target};
+use crepitus_knee::examination::signs;
 use crepitus_scene::preset::{Disorder, Level};
 use serde_json::json;
 
 /// Targets of the panel that the shipped lessons name.
 const TARGETS: [&str; 3] = ["slow", "fast", "ashworth"];
+
+/// Speed that a device allows, °/s.
+const FASTEST_DEG_S: f64 = 300.0;
 
 fn known() -> Known<'static> {
     Known {
@@ -54,6 +59,32 @@ fn every_shipped_lesson_is_valid() {
     assert!(blind("blind-six") && blind("grades-of-spasticity"));
     assert!(!blind("first-knees") && !blind("end-feels"));
     assert!(plans::find("wobble").is_none());
+}
+
+/// Whoever keeps to the target of a knee feels all of its signs.
+#[test]
+fn every_shipped_lesson_can_be_done() {
+    let mut seen = 0;
+    for file in plans::FILES {
+        let plan = file.read().unwrap();
+        for knee in plan.knees.iter().filter(|knee| knee.preset != "healthy") {
+            let preset = preset::find(&knee.preset).unwrap();
+            let speed_deg_s = match &knee.target {
+                Some(name) => match Target::find(name).unwrap().aim {
+                    Aim::Speed { low_deg_per_s, .. } => low_deg_per_s,
+                    Aim::Metronome { .. } => panic!("{}: a metronome has no speed", file.name),
+                },
+                None => FASTEST_DEG_S,
+            };
+            for sign in signs(&preset.effect_settings(), preset.joint().is_some()) {
+                let least_deg_s = sign.appears_from_deg_s();
+                let name = (file.name, &knee.preset, sign.effect);
+                assert!(least_deg_s <= speed_deg_s, "{name:?}: {least_deg_s} °/s");
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen >= 20, "{seen} signs");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use super::*;
 use crepitus_knee::Hand;
 use crepitus_knee::hand::MOST_RAD_S;
+use crepitus_scene::{preset, shipped};
 
 /// Largest change of the leg's velocity in a tick, rad/s: 50 N·m on the arm alone would be 0.037.
 const MOST_CHANGE_RAD_S: f64 = 0.04;
@@ -144,4 +145,50 @@ fn its_energy_is_kept_whatever_bridge_and_hand_do() {
         assert!(open.abs() < 1e-7, "{listed:?}: {open:.1e}");
         assert!(fastest < 3.0 * MOST_RAD_S, "{listed:?}: {fastest}");
     }
+}
+
+/// Degrees between which the leg moves in so many ticks.
+fn ends_deg(leg: &mut Leg, count: u32) -> [f64; 2] {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for _ in 0..count {
+        ticks(leg, 1);
+        low = low.min(leg.leg().angle_rad);
+        high = high.max(leg.leg().angle_rad);
+    }
+    [low, high].map(f64::to_degrees)
+}
+
+/// Also before the device is armed, and with the knee that it got meanwhile.
+#[test]
+fn an_examiner_goes_on_from_where_a_hand_has_left_the_leg() {
+    let mut leg = Leg::new(&Scene {
+        begins_straight: true,
+        ..shipped::examination().expect("it ships")
+    });
+    let hand = leg.hand();
+    ticks(&mut leg, 2_000);
+    assert!(leg.leg().angle_rad.abs() < 1e-9, "straight until armed");
+    hand.aim(1.0);
+    ticks(&mut leg, 40_000);
+    let held_rad = leg.leg().angle_rad;
+    assert!((held_rad - 1.0).abs() < 0.1, "{held_rad}");
+    hand.release();
+    // It rests for 0.4 s.
+    let most = largest_change(&mut leg, 7_900);
+    assert!(most < MOST_CHANGE_RAD_S, "{most}");
+    assert!((leg.leg().angle_rad - held_rad).abs() < 0.01);
+    let [low, high] = ends_deg(&mut leg, 80_000);
+    assert!(
+        (low - 10.0).abs() < 0.1 && (high - 80.0).abs() < 0.1,
+        "{low} to {high}"
+    );
+    hand.aim(0.5);
+    ticks(&mut leg, 20_000);
+    let clonus = preset::find("scats-3-clonus").expect("it ships");
+    leg.examine(&clonus.effect_settings(), false);
+    let [low, high] = ends_deg(&mut leg, 20_000);
+    assert!(low > 22.0 && high < 35.0, "held: {low} to {high}");
+    hand.release();
+    let [_, high] = ends_deg(&mut leg, 60_000);
+    assert!((high - 75.0).abs() < 0.1, "{high}");
 }

@@ -1,0 +1,98 @@
+//! What is measured, of whom, and what a blind trial hides of it.
+
+use super::{Alone, Flood, device_thread};
+use crate::device_thread::DeviceThread;
+use crate::request::{AimAt, LessonBegin};
+use serde_json::{Value, json};
+
+/// The examination and the target, as pages get them.
+fn examined(device_thread: &mut DeviceThread<'_, Flood>) -> (Value, Value) {
+    device_thread.publish_examination();
+    device_thread.publish_target();
+    let latest = device_thread.shared.latest.borrow();
+    let read = |text: &str, key: &str| {
+        let message: Value = serde_json::from_str(text).unwrap();
+        message[key].clone()
+    };
+    (
+        read(&latest.examination, "examination"),
+        read(&latest.target, "target"),
+    )
+}
+
+/// The measures and signs of a stroke and a half, by a person or by a simulated examiner, whose speed is
+/// nobody's score; in a blind trial nothing of the knee.
+#[test]
+fn what_is_examined_is_measured_and_a_simulated_examiner_is_not_judged() {
+    let program = Alone::default();
+    for (is_simulated, is_blind) in [(false, false), (true, false), (false, true)] {
+        let mut device_thread = device_thread(&program);
+        if !is_simulated {
+            // A brace is moved by the person at it.
+            device_thread.hand = None;
+        }
+        if is_blind {
+            let plan = json!({ "title": "One", "blind": true, "knees": [{ "preset": "coarse" }] });
+            let lesson = LessonBegin {
+                lesson: None,
+                plan: Some(plan),
+                students: vec!["A".to_owned()],
+                seed: Some(7),
+                repeats: None,
+            };
+            device_thread.begin_lesson(&lesson).expect("a lesson");
+            device_thread.start_trial().expect("a trial");
+        }
+        let slow = AimAt::Named("slow".to_owned());
+        device_thread.set_target(Some(slow)).expect("a target");
+        device_thread.set_scoring(true).expect("a score");
+        device_thread.client.zero().expect("a zero");
+        device_thread.client.arm().expect("armed");
+        let until_s = device_thread.now_s + 4.0;
+        while device_thread.now_s < until_s {
+            device_thread.pump();
+        }
+        let (examination, target) = examined(&mut device_thread);
+        assert_eq!(examination["by_person"], !is_simulated);
+        assert_eq!(target["by_person"], !is_simulated);
+        assert_eq!(target["strokes"] == 0, is_simulated, "{target}");
+        assert!(examination["measures"][0].as_f64() > Some(50.0));
+        let findings = &examination["findings"];
+        if is_blind {
+            // R2: the angle is shown, but where it met an end is of the torque.
+            assert!(findings.is_null() && examination["measures"][5].is_null());
+        } else {
+            assert_eq!(findings[0]["effect"], "crepitus");
+            assert_eq!(findings[0]["outcome"], "shown");
+        }
+        // Another knee is another examination.
+        if !is_blind {
+            device_thread.apply("mas-1-catch", false).expect("a knee");
+            let (examination, _) = examined(&mut device_thread);
+            assert!(examination["measures"][0].is_null());
+            assert_eq!(examination["findings"][0]["outcome"], "not-moved");
+        }
+    }
+}
+
+#[test]
+fn a_person_is_examined_while_the_leg_is_in_his_or_her_hand() {
+    let program = Alone::default();
+    let mut device_thread = device_thread(&program);
+    let hand = device_thread.client.transport_mut().device.hand();
+    let hand = hand.expect("a simulated leg");
+    for by_person in [false, true, false] {
+        if by_person {
+            hand.aim(0.5);
+        } else {
+            hand.release();
+        }
+        let until_s = device_thread.now_s + 0.2;
+        while device_thread.now_s < until_s {
+            device_thread.pump();
+        }
+        let (examination, target) = examined(&mut device_thread);
+        assert_eq!(examination["by_person"], by_person);
+        assert_eq!(target["by_person"], by_person);
+    }
+}
