@@ -59,6 +59,7 @@ pub(super) const USES: &[(&str, Use)] = &[
         Endless("identify-actuator --device sim --scene {} --moving-mass-g 50 --out {out}"),
     ),
     ("info --scene", Every("info --device sim --scene {}")),
+    ("knee --out", Written),
     (
         "monitor --scene",
         Ends("monitor --device sim --scene {} --for 1s"),
@@ -143,6 +144,7 @@ pub(super) const NO_FILES: &[&str] = &[
     "KG",
     "KG_M2",
     "KIND",
+    "LANGUAGE",
     "LEVEL",
     "LIST",
     "M",

@@ -106,6 +106,7 @@ pub(super) const CASES: &[Case] = &[
     folder("report", REPORT, &["report.html", "summary.json"]),
     file("report", &["RECORDING", "--out", "o"], "--wav", "knee.wav"),
     file("export", EXPORT, "--out", "out.csv"),
+    file("knee", &["--language", "en"], "--out", "knee.html"),
     file(
         "record",
         &["--device", "sim", "--for", "50ms"],

@@ -1,9 +1,10 @@
 // The knee of the single page without a page, for the test that compares it with the native one:
 //
-//   node columns.mjs knee.wasm < runs > columns
+//   node columns.mjs knee.wasm MEASURES < runs > columns
 //
 // A run is a line of standard input: [ids, values, ticks, angles], parameters and frames of a hand. Each has a
-// knee of its own; of each frame every column is written as it lies in memory.
+// knee of its own; of each frame every column is written as it lies in memory, at the end the measures of the
+// examination and its steps.
 
 import { readFileSync } from "node:fs";
 
@@ -17,6 +18,9 @@ const COLUMNS = [
   "states",
   "phase",
 ];
+
+/** The number of measures. */
+const MEASURES = Number(process.argv[3]);
 
 function columnsOf(module, [ids, values, ticks, angles]) {
   const knee = new WebAssembly.Instance(module).exports;
@@ -33,7 +37,10 @@ function columnsOf(module, [ids, values, ticks, angles]) {
     // A copy: the next frame lies in the same place.
     return Buffer.concat(COLUMNS.map(column));
   });
-  return Buffer.concat(frames);
+  const measures = Buffer.from(knee.memory.buffer, knee.examination(), 4 * MEASURES);
+  const steps = Buffer.alloc(4);
+  steps.writeInt32LE(knee.steps());
+  return Buffer.concat([...frames, measures, steps]);
 }
 
 const module = new WebAssembly.Module(readFileSync(process.argv[2]));

@@ -20,6 +20,7 @@ for (const colorScheme of ["light", "dark"]) {
     test(`axe finds nothing: ${width} px, ${colorScheme}`, async () => {
       const viewport = { width, height: width > 2000 ? 2160 : 844 };
       const page = await openControlling(panel.teacher, { viewport, colorScheme, reducedMotion: "reduce" });
+      await page.locator("#inside > summary").click();
       for (const tab of ["Live", "Knee", "Lesson", "Recordings"]) {
         const button = page.getByRole("tab", { name: tab });
         // Beside the other parts, live has no tab.

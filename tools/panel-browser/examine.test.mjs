@@ -139,3 +139,24 @@ test("the first curve comes within a second, and frames join", async () => {
   assert.equal(stats.missing, 0);
   assert.ok(stats.bins > 300, `${stats.bins} bins`);
 });
+
+test("inside the joint: object, loop and slow motion; its sound", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  await page.locator("#inside > summary").click();
+  await arm(page);
+  await page.getByRole("button", { name: "Sound" }).click();
+  await until(page, "sound", () => window.crepitusSound.way === "worklet" && window.crepitusSound.samples > 20_000);
+  await until(page, "the object", () => !document.querySelector("#inside-leg .inside").classList.contains("off"));
+  await page.getByRole("button", { name: "The last second" }).click();
+  const seek = page.getByRole("slider", { name: "Time in the last second" });
+  const begun = await seek.inputValue();
+  await page.waitForTimeout(500);
+  assert.notEqual(await seek.inputValue(), begun);
+  await page.getByRole("button", { name: "Back to now" }).click();
+  await page.getByRole("button", { name: "Freeze" }).click();
+  await page.locator("#inside-loop [role=slider]").focus();
+  await page.keyboard.press("ArrowRight");
+  await page.locator("#inside-loop .hint", { hasText: "bending" }).waitFor();
+  assert.deepEqual(page.problems, []);
+});

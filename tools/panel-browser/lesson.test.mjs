@@ -15,6 +15,7 @@ test("six knees blind, two students, to the printed report", async () => {
   const page = await openControlling(panel.teacher);
   const viewer = await openLive(panel.viewer);
   await arm(page);
+  await page.locator("#inside > summary").click();
   await page.getByRole("tab", { name: "Lesson" }).click();
   await page.getByRole("radio", { name: /Six knees/ }).check({ force: true });
   await page.getByLabel("Pseudonyms").fill("A\nB");
@@ -28,6 +29,8 @@ test("six knees blind, two students, to the printed report", async () => {
       await shown.locator("#knee-now", { hasText: "hidden" }).waitFor();
       await shown.locator("#torque", { hasText: "hidden" }).waitFor();
     }
+    await page.locator("#inside-loop .masked").waitFor();
+    assert.ok(!(await page.locator("#inside-flow .flow").isVisible()));
     const text = await viewer.evaluate(() => document.querySelector("header").innerText);
     assert.ok(!/MAS|UPDRS|crepitus \(|clasp/i.test(text), text);
     for (const student of ["A", "B"]) {

@@ -16,6 +16,7 @@ pub(crate) mod export;
 pub(crate) mod identify;
 pub(crate) mod identify_actuator;
 pub(crate) mod info;
+pub(crate) mod knee;
 pub(crate) mod monitor;
 pub(crate) mod panel;
 pub(crate) mod params;
@@ -59,6 +60,7 @@ verbs! {
     Demo: demo,
     Panel: panel,
     Monitor: monitor,
+    Knee: knee,
     Devices: devices,
     Info: info,
     Doctor: doctor,

@@ -16,6 +16,8 @@ mod high_pass;
 mod info_chunk;
 mod resampler;
 mod sound;
+#[cfg(test)]
+mod twin;
 
 pub use high_pass::HIGH_PASS_HZ;
 pub use sound::{RATE_HZ, Sound, SoundError, SoundSummary};

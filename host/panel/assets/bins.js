@@ -80,6 +80,14 @@ export class RecentBins {
     this.masked = { torque: false, states: false };
   }
 
+  /** Moves what is kept to the front if so many bins more do not fit behind it. */
+  makeRoom(count) {
+    if (this.end + count <= 2 * this.room) return;
+    for (const column of Object.values(this.columns)) column.copyWithin(0, this.begin, this.end);
+    this.end -= this.begin;
+    this.begin = 0;
+  }
+
   /** Appends a frame; returns how many bins it had and how many samples were missing before it. */
   push(view) {
     const count = view.getUint16(2, true);
@@ -90,11 +98,7 @@ export class RecentBins {
     if (count && this.end > this.begin && view.getFloat64(16, true) < this.columns.t[this.end - 1] - 0.1) {
       this.begin = this.end = 0;
     }
-    if (this.end + count > 2 * this.room) {
-      for (const column of Object.values(this.columns)) column.copyWithin(0, this.begin, this.end);
-      this.end -= this.begin;
-      this.begin = 0;
-    }
+    this.makeRoom(count);
     this.end += decode(view, this.columns, this.end);
     this.begin = Math.max(this.begin, this.end - this.room);
     if (count) {

@@ -5,6 +5,7 @@ import { storedToken, storeToken } from "./storage.js";
 
 const VERSION = 2;
 const KIND_TRACE = 2;
+const KIND_SAMPLES = 3;
 // The server sends something every 100 ms. Without a message for so long the page no longer
 // knows what the device does.
 const SILENT_AFTER_MS = 400;
@@ -24,8 +25,8 @@ let isSilent = false;
 export const latest = {};
 
 /**
- * Calls this at each message of a kind, and at `open`, `lost`, `refused`, `frame`; at `silent`, with the seconds,
- * while nothing arrives; at `heard` when something does again.
+ * Calls this at each message of a kind, and at `open`, `lost`, `refused`, `frame`, `samples`; at `silent`, with the
+ * seconds, while nothing arrives; at `heard` when something does again.
  */
 export function on(kind, listener) {
   if (!listeners.has(kind)) listeners.set(kind, []);
@@ -54,9 +55,9 @@ export function ask(what, more = {}) {
   });
 }
 
-/** Says to which angle this page's hand moves the leg, in degrees, or that it lets go. There is no reply. */
-export function moveHand(angle, holds) {
-  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ hand: angle, holds }));
+/** Sends what has no reply, if there is a connection. */
+export function tell(message) {
+  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
 }
 
 function settle(id, outcome, value) {
@@ -72,6 +73,7 @@ function receiveFrame(data) {
   if (data.byteLength < 40 || view.getUint8(0) !== VERSION) return;
   const id = view.getUint32(4, true);
   if (view.getUint8(1) === KIND_TRACE) return settle(id, "resolve", view);
+  if (view.getUint8(1) === KIND_SAMPLES) return emit("samples", view);
   socket.send(`{"seen":${id}}`);
   newest = id;
   emit("frame", view);

@@ -1,6 +1,6 @@
 // The person's hand on the leg of a simulated device: who may move it, and how it is given back.
 
-import { isController, isTeacher, latest, moveHand, on } from "./connection.js";
+import { isController, isTeacher, latest, on, tell } from "./connection.js";
 import { byId, setText } from "./dom.js";
 import { makeHand } from "./hand.js";
 import { angleAt, legText } from "./leg.js";
@@ -11,6 +11,9 @@ import { onLanguage, text } from "./strings.js";
 const ANNOUNCE_MS = 1000;
 let hand = null;
 let announced = { at: -Infinity, text: "" };
+
+// There is no reply.
+const moveHand = (angle, holds) => tell({ hand: angle, holds });
 
 /** The angles that a hand can reach; null where no hand can move the leg. */
 const reach = () => latest.hello?.source.hand ?? null;

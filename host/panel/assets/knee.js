@@ -6,6 +6,7 @@ import { controlReason } from "./control.js";
 import { askForm } from "./dialogs.js";
 import { byId, el, field, freshId, setText, tick } from "./dom.js";
 import { buildDrawer, updateDrawer } from "./drawer.js";
+import { evidenceTag } from "./labels.js";
 import { disorderName, kneeName, presets, presetText } from "./names.js";
 import { request } from "./report.js";
 import { onLanguage, text, textOr } from "./strings.js";
@@ -13,9 +14,6 @@ import { onLanguage, text, textOr } from "./strings.js";
 const chosen = new Map();
 let cards = [];
 let view = null;
-
-const evidenceTag = (evidence) =>
-  evidence && el("span", { class: `tag ${evidence}` }, text(`evidence.${evidence}`));
 
 const LEVELS = [null, "mild", "moderate", "severe"];
 const grade = (preset) => presetText(preset, "severity").split(":")[0];

@@ -4,8 +4,11 @@
 import { svg } from "./dom.js";
 import { number, text } from "./strings.js";
 
-const KNEE = { x: 150, y: 62 };
-const SHANK =
+/** The axis of the knee in the drawing, and the outlines of thigh and lower leg at 0°. */
+export const KNEE = { x: 150, y: 62 };
+export const THIGH =
+  "M8 30 C50 24 110 34 150 38 C166 40 174 52 173 62 C172 76 162 86 150 86 C110 92 50 100 8 98 Z";
+export const SHANK =
   "M150 40 C185 42 215 44 250 48 L254 50 C268 38 276 30 284 26 C292 27 292 38 288 50 L280 76 C270 80 262 78 252 76 C215 80 185 86 150 84 Z";
 // Closer to the leg a hand is not drawn: its outline would flicker.
 const APART = 1;
@@ -43,10 +46,7 @@ export function makeLeg(host) {
     "svg",
     { viewBox: "0 0 300 212", role: "img" },
     svg("path", { class: "bench", d: "M6 100 H122 V204" }),
-    svg("path", {
-      class: "skin",
-      d: "M8 30 C50 24 110 34 150 38 C166 40 174 52 173 62 C172 76 162 86 150 86 C110 92 50 100 8 98 Z",
-    }),
+    svg("path", { class: "skin", d: THIGH }),
     svg("path", { class: "straight", d: "M150 62 H292" }),
     ghost,
     shank,

@@ -7,6 +7,7 @@ import { isReplay, latest, on } from "./connection.js";
 import { byId, el, setText, tick } from "./dom.js";
 import { latenessOf } from "./lateness.js";
 import { makeLeg } from "./leg.js";
+import { drawInside, startInside } from "./live-inside.js";
 import { shadeName, shadesIn, shadesOf } from "./states.js";
 import { store, stored } from "./storage.js";
 import { number, onLanguage, text } from "./strings.js";
@@ -140,8 +141,10 @@ function paint(now) {
   if (end > begin) {
     const to = columns.t[end - 1] + bins.length / 2;
     charts.masked = bins.masked;
-    if (began - lateAt < CAREFUL_MS) charts.draw(to - seconds, to, nextPane++);
+    const isCareful = began - lateAt < CAREFUL_MS;
+    if (isCareful) charts.draw(to - seconds, to, nextPane++);
     else charts.draw(to - seconds, to);
+    if (!isCareful || nextPane % 3 === 0) drawInside(now, bins, isStale);
     const { angle, hand } = legNow();
     turnLeg(angle, hand);
   }
@@ -243,6 +246,8 @@ export function startLive() {
     legend = makeLegend(byId("legend"), shades);
     bins.clear();
   });
+  // After the listener that puts a frame into the bins.
+  startInside(bins);
   on("status", showCounters);
   onLanguage(() => {
     charts.retitle();

@@ -1,17 +1,16 @@
 // Names of knees and disorders as people read them, in the chosen language.
 
 import { latest } from "./connection.js";
+import { presetText } from "./labels.js";
 import { text, textOr } from "./strings.js";
+
+export { levelName, presetText } from "./labels.js";
 
 /** All presets: those saved since the greeting replace its list. */
 export const presets = () => latest.presets ?? latest.hello?.presets ?? [];
 
 /** A preset by its name. */
 export const presetOf = (name) => presets().find((preset) => preset.name === name);
-
-/** A text of a preset: `title`, `feel` or `severity`. */
-export const presetText = (preset, what) =>
-  preset.own ? preset[what] : textOr(`preset.${preset.name}.${what}`, preset[what]);
 
 /** The title of the preset with this name, or "healthy". */
 export function presetTitle(name) {
@@ -26,9 +25,6 @@ export function disorderName(name) {
   const heading = latest.hello?.disorders.find((disorder) => disorder.name === name)?.heading;
   return name ? textOr(`disorder.${name}`, heading ?? name) : text("disorder.other");
 }
-
-/** The name of a severity. */
-export const levelName = (level) => (level ? textOr(`level.${level}`, level) : "–");
 
 /** Whether any effect of the knee differs from its default. */
 function isHealthy(parameters) {

@@ -8,7 +8,8 @@ let english = {};
 let chosen = {};
 let language = "en";
 
-const load = async (name) => (await fetch(`strings/${name}.json`)).json();
+const fetched = async (name) => (await fetch(`strings/${name}.json`)).json();
+let load = fetched;
 
 /** Returns the text of a key; `{name}` in it stands for `values.name`. */
 export function text(key, values = {}) {
@@ -61,16 +62,19 @@ async function choose(name) {
   chosen = name === "en" ? english : await load(name);
   language = name;
   document.documentElement.lang = name;
-  document.title = text("title");
+  document.title = text(document.documentElement.dataset.title ?? "title");
   fillTexts();
   for (const listener of listeners) listener();
 }
 
-/** Loads the texts, and offers the languages in this `<select>`. */
-export async function startStrings(select) {
+/** Loads the texts, and offers the languages in this `<select>`; those that a page has in itself, or all. */
+export async function startStrings(select, own = null) {
+  if (own) load = (name) => own[name] ?? {};
+  const names = Object.keys(own ?? LANGUAGES);
   const wish = stored("language") ?? navigator.language.slice(0, 2);
-  const name = wish in LANGUAGES ? wish : "en";
-  for (const [value, label] of Object.entries(LANGUAGES)) select.append(new Option(label, value));
+  const name = names.includes(wish) ? wish : names[0];
+  for (const value of names) select.append(new Option(LANGUAGES[value], value));
+  select.hidden = names.length < 2;
   select.value = name;
   select.addEventListener("change", () => {
     store("language", select.value);

@@ -11,6 +11,7 @@
 //! | parameters and presets | `device_thread/knee.rs` |
 //! | lessons | `device_thread/lessons.rs` |
 //! | recordings | `device_thread/recording.rs` |
+//! | torques that pages play as sound | `device_thread/heard.rs` |
 //! | notes | `device_thread/notes.rs` |
 //! | the target of a hand, and its score | `device_thread/target.rs` |
 //! | the hand on a simulated leg | `device_thread/hand.rs` |
@@ -19,6 +20,7 @@
 
 mod examination;
 mod hand;
+mod heard;
 mod knee;
 mod lessons;
 mod notes;
@@ -43,6 +45,7 @@ use crepitus_recording::Samples;
 use crepitus_scene::preset::Preset;
 use examination::Examined;
 use hand::Hand;
+use heard::Heard;
 use lessons::Held;
 use notes::Note;
 use recording::Recorded;
@@ -118,6 +121,7 @@ pub(crate) struct DeviceThread<'p, T> {
     envelope: Envelope,
     /// Hand on the leg of a simulated device.
     hand: Option<Hand>,
+    heard: Heard,
     /// Time of the newest sample, s.
     now_s: f64,
     missing: u64,
@@ -175,6 +179,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             preset: None,
             envelope: Envelope::new(ROWS_PER_BIN),
             hand,
+            heard: Heard::default(),
             now_s: 0.0,
             missing: 0,
             frame_number: 0,
@@ -339,9 +344,13 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         }
         self.record(block);
         let by_person = self.notice_mover();
+        let is_heard = self.is_heard();
         for row in self.samples.rows(block) {
             self.now_s = row.time_s;
             self.envelope.take(&row);
+            if is_heard {
+                self.heard.take(&row);
+            }
             if let Some(held) = &mut self.lesson {
                 held.take(row.flags.has(SampleFlags::ENERGISED));
             }
@@ -387,6 +396,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         };
         // Without a page nobody receives it.
         let _ = self.shared.frames.send(frame(&header, &bins));
+        self.publish_samples();
     }
 
     /// Data that pages must not see: in a blind trial the knee.

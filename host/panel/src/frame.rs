@@ -3,6 +3,7 @@
 //! ```text
 //! header   version u8 ‖ kind u8 ‖ bins u16 ‖ number u32 ‖ unix ms f64 ‖ begin s f64 ‖ bin s f64 ‖ missing u32 ‖ masks u32
 //! bin      torque, model, speed, angle, hand: low f32 ‖ high f32 each ‖ states u32 ‖ breaks u16 ‖ marks u16
+//! sample   torque f32: instead of bins, for pages that play it as sound
 //! ```
 //!
 //! All little endian; N·m, rad/s, rad; NaN without a value. `hand` is where a hand wants the leg.
@@ -30,6 +31,8 @@ pub(crate) enum Kind {
     Live = 1,
     /// Bins of a recording.
     Trace = 2,
+    /// Samples of the live view.
+    Samples = 3,
 }
 
 /// Data that a page must not see.
@@ -59,9 +62,26 @@ pub(crate) struct Header {
 
 /// The frame of these bins; what does not fit is left out.
 pub(crate) fn frame(header: &Header, bins: &[Bin]) -> Bytes {
-    let count = u16::try_from(bins.len()).unwrap_or(u16::MAX);
+    let (count, mut out) = begun(header, bins.len(), BIN);
+    for bin in bins.iter().take(count) {
+        append(&mut out, bin, header.masks);
+    }
+    Bytes::from(out)
+}
+
+/// The frame of these torques; what does not fit is left out.
+pub(crate) fn samples(header: &Header, torques_nm: &[f32]) -> Bytes {
+    let (count, mut out) = begun(header, torques_nm.len(), size_of::<f32>());
+    let torques_nm = torques_nm.iter().take(count);
+    out.extend(torques_nm.flat_map(|nm| nm.to_le_bytes()));
+    Bytes::from(out)
+}
+
+/// The header of a frame of so many parts, with room for them, and the number of those that fit.
+fn begun(header: &Header, parts: usize, bytes: usize) -> (usize, Vec<u8>) {
+    let count = u16::try_from(parts).unwrap_or(u16::MAX);
     let masks = header.masks;
-    let mut out = Vec::with_capacity(40 + bins.len() * BIN);
+    let mut out = Vec::with_capacity(40 + parts * bytes);
     out.extend([VERSION, header.kind as u8]);
     out.extend(count.to_le_bytes());
     out.extend(header.number.to_le_bytes());
@@ -72,10 +92,7 @@ pub(crate) fn frame(header: &Header, bins: &[Bin]) -> Bytes {
     out.extend(missing.to_le_bytes());
     let bits = u32::from(masks.torque) | u32::from(masks.states) << 1;
     out.extend(bits.to_le_bytes());
-    for bin in bins.iter().take(usize::from(count)) {
-        append(&mut out, bin, masks);
-    }
-    Bytes::from(out)
+    (usize::from(count), out)
 }
 
 fn append(out: &mut Vec<u8>, bin: &Bin, masks: Masks) {
@@ -158,6 +175,19 @@ mod tests {
         // The object sticks: mark 1.
         let rest = [5, 0, 0, 0, 6, 0, 1, 0];
         assert_eq!(bytes[HEADER + 40..HEADER + BIN], rest);
+    }
+
+    #[test]
+    fn a_frame_of_samples_is_its_header_and_its_torques() {
+        let header = Header {
+            kind: Kind::Samples,
+            ..header(Masks::default())
+        };
+        let bytes = samples(&header, &[0.5, -2.0]);
+        assert_eq!(bytes[..8], [VERSION, 3, 2, 0, 7, 0, 0, 0]);
+        assert_eq!(bytes[HEADER..], [0, 0, 0, 63, 0, 0, 0, 192]);
+        let many = samples(&header, &vec![0.0; 70_000]);
+        assert_eq!(many.len(), HEADER + 4 * usize::from(u16::MAX));
     }
 
     #[test]

@@ -19,19 +19,12 @@ pub(crate) fn tables(source: &Value, sessions: Option<&Path>) -> Value {
         "version": env!("CARGO_PKG_VERSION"),
         "source": source,
         "tick_hz": TICKS_PER_S,
-        "disorders": Disorder::ALL.map(|disorder| json!({
-            "name": disorder.name(),
-            "heading": disorder.heading(),
-            "grade_0": disorder.grade_0(),
-        })),
+        "disorders": disorders(),
         "parameters": PARAMETERS.iter().map(parameter).collect::<Vec<_>>(),
         "groups": groups(),
-        "states": STATES.map(|state| json!({ "effect": state.effect, "phase": state.phase })),
+        "states": states(),
         "targets": NAMED,
-        "measures": Measure::ALL.map(|measure| {
-            let spec = measure.spec();
-            json!({ "name": measure.name(), "unit": spec.unit, "digits": spec.digits })
-        }),
+        "measures": measures(),
         "faults": FAULTS.iter().map(|fault| json!({
             "code": fault.fault as u8,
             "name": fault.name,
@@ -58,6 +51,40 @@ pub(crate) fn tables(source: &Value, sessions: Option<&Path>) -> Value {
         "stores": sessions.map(|folder| folder.display().to_string()),
         "students_max": crate::lesson::MOST_STUDENTS,
     })
+}
+
+/// Disorders, with their names.
+pub(crate) fn disorders() -> Value {
+    let of = |disorder: Disorder| {
+        json!({
+            "name": disorder.name(),
+            "heading": disorder.heading(),
+            "grade_0": disorder.grade_0(),
+        })
+    };
+    Disorder::ALL.into_iter().map(of).collect()
+}
+
+/// States of effects; the place of one is its bit.
+pub(crate) fn states() -> Value {
+    let states = STATES.iter();
+    states
+        .map(|state| json!({ "effect": state.effect, "phase": state.phase }))
+        .collect()
+}
+
+/// Measures of an examination, and whether each tells something of the torque.
+pub(crate) fn measures() -> Value {
+    let of = |measure: Measure| {
+        let spec = measure.spec();
+        json!({
+            "name": measure.name(),
+            "unit": spec.unit,
+            "digits": spec.digits,
+            "is_of_torque": spec.is_of_torque,
+        })
+    };
+    Measure::ALL.into_iter().map(of).collect()
 }
 
 /// Presets that ship, and the user's own.

@@ -24,6 +24,7 @@
 //! | lessons: plans, blind trials, scores, folders of sessions | [`lesson`] |
 //! | what a live view shows: envelope, states, target speeds | [`live`] |
 //! | the page itself | `assets` |
+//! | the knee on one page, without a program | `page.rs`, `assets/page` |
 #![forbid(unsafe_code)]
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
@@ -39,6 +40,7 @@ mod hand;
 mod hello;
 pub mod lesson;
 pub mod live;
+mod page;
 mod panel;
 mod panel_error;
 mod pending;
@@ -55,5 +57,6 @@ mod tokens;
 mod watchdog;
 
 pub use device_thread::Program;
+pub use page::{PageError, knee_page, page_languages};
 pub use panel::{Links, Panel, Settings, Source};
 pub use panel_error::PanelError;

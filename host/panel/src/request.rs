@@ -12,6 +12,11 @@ pub(crate) enum Message {
         /// Number of the frame.
         seen: u32,
     },
+    /// The page plays the torque as sound from now on, or no longer.
+    Listen {
+        /// It plays it.
+        listen: bool,
+    },
     /// A request.
     Request {
         /// The reply has it, too.
@@ -239,8 +244,9 @@ mod tests {
     fn request(text: &str) -> Result<Request, String> {
         match serde_json::from_str(text) {
             Ok(Message::Request { request, .. }) => Ok(request),
-            Ok(Message::Seen { .. }) => Err("an answer".to_owned()),
-            Ok(Message::Hand { .. }) => Err("a hand".to_owned()),
+            Ok(Message::Seen { .. } | Message::Listen { .. } | Message::Hand { .. }) => {
+                Err("no request".to_owned())
+            }
             Err(error) => Err(error.to_string()),
         }
     }
@@ -279,6 +285,10 @@ mod tests {
             serde_json::from_str(r#"{"hand":-12.5,"holds":true}"#),
             Ok(Message::Hand { hand, holds: true }) if hand == -12.5
         ));
+        assert!(matches!(
+            serde_json::from_str(r#"{"listen":true}"#),
+            Ok(Message::Listen { listen: true })
+        ));
     }
 
     #[test]
@@ -292,6 +302,7 @@ mod tests {
             r#"{"id":-1,"do":"stop"}"#,
             r#"{"id":1,"do":"set","changes":[[300,1]]}"#,
             r#"{"seen":-1}"#,
+            r#"{"listen":1}"#,
             r#"{"hand":1e999,"holds":true}"#,
             r#"{"hand":NaN,"holds":true}"#,
             r#"{"hand":null,"holds":true}"#,

@@ -73,6 +73,8 @@ impl Latest {
 /// Data and channels that the threads share.
 pub(crate) struct Shared {
     pub(crate) frames: broadcast::Sender<Bytes>,
+    /// Frames of samples, for pages that listen.
+    pub(crate) samples: broadcast::Sender<Bytes>,
     pub(crate) latest: watch::Sender<Latest>,
     pub(crate) watchdog: PageWatchdog,
     pub(crate) control: Control,
@@ -101,6 +103,7 @@ impl Shared {
     ) -> Self {
         Self {
             frames: broadcast::channel(FRAMES).0,
+            samples: broadcast::channel(FRAMES).0,
             latest: watch::channel(Latest::default()).0,
             watchdog: PageWatchdog::new(),
             control: Control::new(),

@@ -10,6 +10,7 @@ use crate::hand::HandRequest;
 use crate::request::{Message as FromPage, Request, Right};
 use crate::shared::{Latest, Outcome, Shared, gone};
 use crate::tokens::Role;
+use axum::body::Bytes;
 use axum::extract::ws::{Message, Utf8Bytes, WebSocket};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
@@ -19,7 +20,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::broadcast::error::RecvError;
-use tokio::sync::{mpsc, oneshot};
+use tokio::sync::{broadcast, mpsc, oneshot, watch};
 use tokio::task::JoinSet;
 use tokio::time::{sleep, timeout};
 
@@ -71,8 +72,9 @@ pub(crate) async fn talk(socket: WebSocket, peer: SocketAddr, shared: Arc<Shared
         return;
     }
     let (replies, waiting) = mpsc::channel(REPLIES);
-    let reader = read(stream, page, role, &shared, replies);
-    let writer = write(sink, page, &shared, waiting);
+    let (listens, listening) = watch::channel(false);
+    let reader = read(stream, page, role, &shared, (replies, listens));
+    let writer = write(sink, page, &shared, (waiting, listening));
     tokio::select! {
         () = reader => {}
         () = writer => {}
@@ -88,7 +90,13 @@ async fn role(stream: &mut SplitStream<WebSocket>, shared: &Shared) -> Option<Ro
     shared.tokens.role(&first.token)
 }
 
-async fn write(mut sink: Sink, page: Page, shared: &Shared, mut replies: mpsc::Receiver<Message>) {
+async fn write(
+    mut sink: Sink,
+    page: Page,
+    shared: &Shared,
+    (mut replies, mut listening): (mpsc::Receiver<Message>, watch::Receiver<bool>),
+) {
+    let mut samples = None;
     let mut frames = shared.frames.subscribe();
     let mut latest = shared.latest.subscribe();
     let mut control = shared.control.subscribe();
@@ -128,6 +136,19 @@ async fn write(mut sink: Sink, page: Page, shared: &Shared, mut replies: mpsc::R
                 Err(RecvError::Lagged(_)) => continue,
                 Err(RecvError::Closed) => return,
             },
+            changed = listening.changed() => {
+                if changed.is_err() {
+                    return;
+                }
+                let listens = *listening.borrow_and_update();
+                samples = listens.then(|| shared.samples.subscribe());
+                continue;
+            }
+            frame = next_of(&mut samples) => match frame {
+                Ok(frame) => vec![Message::Binary(frame)],
+                Err(RecvError::Lagged(_)) => continue,
+                Err(RecvError::Closed) => return,
+            },
             () = sleep(BEAT_EVERY) => vec![text(&json!({ "beat": Value::Null }))],
         };
         for message in messages {
@@ -135,6 +156,14 @@ async fn write(mut sink: Sink, page: Page, shared: &Shared, mut replies: mpsc::R
                 return;
             }
         }
+    }
+}
+
+/// The next frame of samples for a page that listens; never one for a page that does not.
+async fn next_of(samples: &mut Option<broadcast::Receiver<Bytes>>) -> Result<Bytes, RecvError> {
+    match samples {
+        Some(samples) => samples.recv().await,
+        None => std::future::pending().await,
     }
 }
 
@@ -163,7 +192,7 @@ async fn read(
     page: Page,
     role: Role,
     shared: &Arc<Shared>,
-    replies: mpsc::Sender<Message>,
+    (replies, listens): (mpsc::Sender<Message>, watch::Sender<bool>),
 ) {
     // Ends with this function: a page that has gone reads no replies.
     let mut pending = JoinSet::new();
@@ -204,6 +233,9 @@ async fn read(
                         holds,
                     });
                 }
+            }
+            Ok(FromPage::Listen { listen }) => {
+                listens.send_replace(listen);
             }
             Err(_) => {
                 let id = serde_json::from_str::<Value>(&message)

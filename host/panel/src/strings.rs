@@ -24,6 +24,11 @@ impl Strings {
         }
     }
 
+    /// All texts by their keys.
+    pub(crate) fn into_texts(self) -> Map<String, Value> {
+        self.texts
+    }
+
     /// The text of a key; the key itself if there is none.
     pub(crate) fn text(&self, key: &str) -> String {
         let text = self.texts.get(key).and_then(Value::as_str);

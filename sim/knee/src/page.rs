@@ -6,93 +6,29 @@
 //! ```
 //!
 //! The resistance that a tick renders acts on the leg in the next one. Angle and speed are those that the
-//! device measures, torque is what it asks of its motor.
+//! device measures, torque is what it asks of its motor. An examination takes every sample.
 
+mod columns;
 #[cfg(target_arch = "wasm32")]
 mod exports;
 
+pub use columns::{Columns, MOST_TICKS, ROOM};
+
+use crate::examination::{COUNT, Examination, Step};
 use crate::hand::{HandPath, HandState};
 use crate::leg::Leg;
 use crate::pipeline::{Pipeline, healthy};
+use columns::Sample;
 use crepitus_model::control::device_limits::RangeSettings;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::render::position::Sensing;
 use crepitus_model::{Phase, Real, StickSlip};
 use crepitus_protocol::parameters::with_id;
 use crepitus_protocol::telemetry::SampleFlags;
-use crepitus_protocol::{ValueError, Values};
-
-/// The most ticks of one [`Page::advance`]: 102 ms.
-pub const MOST_TICKS: u32 = 2048;
-
-/// Numbers of a column.
-pub const ROOM: usize = MOST_TICKS as usize;
+use crepitus_protocol::{DeviceSettings, TICK_S, ValueError, Values};
 
 /// Ticks in which a device at its defaults settles, at most: 0.1 s.
 const SETTLING_TICKS: u32 = 2_000;
-
-/// Samples of the last [`Page::advance`], a column each.
-#[derive(Debug)]
-pub struct Columns {
-    /// Torque of the device, N·m; positive opposes growing angle.
-    pub torque_nm: [f32; ROOM],
-    /// Angle of the knee, rad.
-    pub angle_rad: [f32; ROOM],
-    /// Velocity of the knee, rad/s.
-    pub speed_rad_s: [f32; ROOM],
-    /// Angle at which the hand wants the leg, rad; that of the leg, if nobody holds it.
-    pub hand_rad: [f32; ROOM],
-    /// Angle of the imaginary object, rad; 0 without one.
-    pub object_rad: [f32; ROOM],
-    /// Torque of its spring, N·m.
-    pub spring_nm: [f32; ROOM],
-    /// [States](crepitus_model::render::effects::STATES) of the symptoms, a bit each.
-    pub states: [u32; ROOM],
-    /// Phase of the imaginary object: 1 stick, 2 slip, 0 without one.
-    pub phase: [u32; ROOM],
-}
-
-/// One row of [`Columns`].
-struct Sample {
-    torque_nm: f32,
-    angle_rad: f32,
-    speed_rad_s: f32,
-    hand_rad: f32,
-    object_rad: f32,
-    spring_nm: f32,
-    states: u32,
-    phase: u32,
-}
-
-impl Columns {
-    const EMPTY: Self = Self {
-        torque_nm: [0.0; ROOM],
-        angle_rad: [0.0; ROOM],
-        speed_rad_s: [0.0; ROOM],
-        hand_rad: [0.0; ROOM],
-        object_rad: [0.0; ROOM],
-        spring_nm: [0.0; ROOM],
-        states: [0; ROOM],
-        phase: [0; ROOM],
-    };
-
-    fn put(&mut self, at: usize, sample: &Sample) {
-        put(&mut self.torque_nm, at, sample.torque_nm);
-        put(&mut self.angle_rad, at, sample.angle_rad);
-        put(&mut self.speed_rad_s, at, sample.speed_rad_s);
-        put(&mut self.hand_rad, at, sample.hand_rad);
-        put(&mut self.object_rad, at, sample.object_rad);
-        put(&mut self.spring_nm, at, sample.spring_nm);
-        put(&mut self.states, at, sample.states);
-        put(&mut self.phase, at, sample.phase);
-    }
-}
-
-fn put<T>(column: &mut [T; ROOM], at: usize, value: T) {
-    if let Some(place) = column.get_mut(at) {
-        *place = value;
-    }
-}
 
 /// A knee with the leg that it is of, and the hand that holds it.
 struct Knee {
@@ -107,6 +43,9 @@ struct Knee {
     committed: Values,
     staged: Values,
     breaks: u32,
+    /// Examination of the knee since the last commit, and its ticks.
+    examination: Examination,
+    examined: u32,
 }
 
 impl Knee {
@@ -131,6 +70,8 @@ impl Knee {
             committed: values,
             staged: values,
             breaks: 0,
+            examination: Examination::default(),
+            examined: 0,
         })
     }
 
@@ -138,10 +79,20 @@ impl Knee {
         let committed = self.pipeline.commit(&self.staged);
         if committed.is_ok() {
             self.committed = self.staged;
+            self.examine();
         } else {
             self.staged = self.committed;
         }
         committed
+    }
+
+    /// Begins the examination of the knee that is committed.
+    fn examine(&mut self) {
+        self.examined = 0;
+        self.examination = DeviceSettings::of(&self.committed).map_or_else(
+            |_| Examination::default(),
+            |settings| Examination::new(&settings.effects, settings.crepitus.is_some()),
+        );
     }
 
     fn hold(&mut self, angle_rad: f64) {
@@ -175,13 +126,21 @@ impl Knee {
         if rendered.flags.has(SampleFlags::BREAK) {
             self.breaks = self.breaks.wrapping_add(1);
         }
+        let counted_rad = f64::from(count) * self.sensing.rad_per_count;
+        self.examined = self.examined.saturating_add(1);
+        self.examination.take(
+            f64::from(self.examined) * TICK_S,
+            counted_rad,
+            f64::from(rendered.omega_rad_s),
+            f64::from(rendered.model_torque_nm),
+        );
         let leg_rad = self.leg.angle_rad();
         let hand_rad = self.hand.map_or(leg_rad, |hand| hand.state().angle_rad);
         let joint = self.pipeline.joint();
         let object_rad = joint.map_or(0.0, StickSlip::theta_rad);
         Sample {
             torque_nm: rendered.torque_nm,
-            angle_rad: f32::from_f64(f64::from(count) * self.sensing.rad_per_count),
+            angle_rad: f32::from_f64(counted_rad),
             speed_rad_s: rendered.omega_rad_s,
             hand_rad: f32::from_f64(hand_rad),
             object_rad,
@@ -211,6 +170,7 @@ enum Slot {
 pub struct Page {
     slot: Slot,
     columns: Columns,
+    measures: [f32; COUNT],
 }
 
 impl Default for Page {
@@ -225,6 +185,7 @@ impl Page {
         Self {
             slot: Slot::Empty,
             columns: Columns::EMPTY,
+            measures: [0.0; COUNT],
         }
     }
 
@@ -241,6 +202,7 @@ impl Page {
     /// [`ValueError`] if the default values are invalid: a bug in their table, which a test excludes.
     pub fn begin(&mut self) -> Result<(), ValueError> {
         self.slot = Slot::Knee(Knee::healthy()?);
+        self.measures = [f32::NAN; COUNT];
         Ok(())
     }
 
@@ -279,12 +241,29 @@ impl Page {
         for (at, _) in (0..ROOM).zip(0..ticks) {
             self.columns.put(at, &knee.tick());
         }
+        self.measures = knee.examination.measures().map(f32::from_f64);
         ticks.min(MOST_TICKS)
     }
 
     /// Samples of the last [`Self::advance`].
     pub fn columns(&self) -> &Columns {
         &self.columns
+    }
+
+    /// Measures of the examination since the last [`Self::commit`], in the order of
+    /// [`Measure::ALL`](crate::examination::Measure::ALL); NaN where there is none.
+    pub fn measures(&self) -> &[f32; COUNT] {
+        &self.measures
+    }
+
+    /// Steps of the examination that were done, a bit each in the order of [`Step::ALL`].
+    pub fn steps(&self) -> u32 {
+        let Slot::Knee(knee) = &self.slot else {
+            return 0;
+        };
+        let done = (0..).zip(Step::ALL);
+        done.filter(|(_, step)| knee.examination.has_done(*step))
+            .fold(0, |steps, (bit, _)| steps | 1_u32.unbounded_shl(bit))
     }
 
     /// Ticks since [`Self::begin`] in which a stick broke; wraps.
@@ -299,6 +278,7 @@ impl Page {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::examination::Measure;
     use crepitus_protocol::parameters::{find, id};
     use std::boxed::Box;
 
@@ -388,6 +368,29 @@ mod tests {
         assert!((columns.torque_nm[LAST] - 1.2).abs() < 1e-3);
         assert_ne!(columns.states[LAST], 0);
         assert!(columns.hand_rad[LAST] > columns.angle_rad[LAST]);
+    }
+
+    #[test]
+    fn an_examination_measures_what_the_hand_does_and_begins_with_a_knee() {
+        let measured = |page: &Page, measure: Measure| page.measures()[measure as usize];
+        let mut page = page();
+        assert!(measured(&page, Measure::Range).is_nan());
+        // Slowly there and back, then fast.
+        for deg in (1_u8..=60).chain((0..=59).rev()) {
+            bend(&mut page, f32::from(deg), 25);
+        }
+        assert_eq!(page.steps(), 0);
+        bend(&mut page, 90.0, 500);
+        assert_eq!(page.steps(), 0b11, "slow and fast");
+        let range_deg = measured(&page, Measure::Range);
+        assert!((88.0..110.0).contains(&range_deg), "{range_deg}");
+        let fastest_deg_s = measured(&page, Measure::PeakSpeed);
+        assert!((150.0..328.0).contains(&fastest_deg_s), "{fastest_deg_s}");
+        set(&mut page, "lead-pipe.render", 1.0);
+        assert_eq!(page.commit(), Ok(()));
+        page.advance(20);
+        assert_eq!(page.steps(), 0);
+        assert!(measured(&page, Measure::Range) < 1.0);
     }
 
     #[test]

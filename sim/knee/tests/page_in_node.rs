@@ -1,9 +1,10 @@
 //! The page's file in Node against the code of this build: every column of 20,000 ticks of every preset and
-//! every symptom, to the bit.
+//! every symptom, and what the examination has measured of them, to the bit.
 //!
 //! The hand's targets come as those of a display, 30 to 120 times a second, so that path, leg and encoder are
 //! compared, too. Without Node the test is left out, unless `CREPITUS_NEEDS_NODE` is set.
 
+use crepitus_knee::examination::COUNT;
 use crepitus_knee::page::Columns;
 use crepitus_knee::{Page, pipeline};
 use crepitus_model::render::effects::SYMPTOMS;
@@ -120,6 +121,7 @@ fn in_node(knees: &[Knee], motion: &[(u32, f32)]) -> Option<Vec<u8>> {
     let node = Command::new("node")
         .arg(repository().join("tools/knee-page/columns.mjs"))
         .arg(&page)
+        .arg(COUNT.to_string())
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .spawn();
@@ -177,6 +179,19 @@ fn the_page_is_the_native_knee_to_the_bit() {
                 panic!("{name}: column {column}, frame {frame}, tick {tick}");
             }
         }
+        let (measures, rest) = theirs.split_at_checked(COUNT).unwrap();
+        for (ours, word) in page.measures().iter().zip(measures) {
+            let measured = f32::from_le_bytes(*word);
+            // Every NaN is none.
+            let is_none = ours.is_nan() && measured.is_nan();
+            assert!(
+                is_none || ours.to_bits() == measured.to_bits(),
+                "{name}: {ours}, {measured}"
+            );
+        }
+        let (steps, rest) = rest.split_first().unwrap();
+        assert_eq!(page.steps(), u32::from_le_bytes(*steps), "{name}");
+        theirs = rest;
         if !resists {
             silent.push(name.as_str());
         }

@@ -13,7 +13,7 @@ pub const RATE_HZ: u32 = 48_000;
 
 /// Peak level of a sound, as a share of full scale: −1 dB, so that no converter overshoots between
 /// two samples.
-const PEAK: f64 = 0.891;
+pub(super) const PEAK: f64 = 0.891;
 
 /// Peak torque below which a sound is silence, N·m: rounding noise of a constant.
 const SILENCE_NM: f64 = 1e-9;

@@ -3,10 +3,11 @@ mod examination;
 use super::recording::extension;
 use super::{DeviceThread, Program};
 use crate::control::{Holder, Page};
-use crate::frame::Masks;
+use crate::frame::{HEADER, Kind, Masks};
 use crate::request::{LessonBegin, Request as FromPage};
 use crate::shared::{Outcome, Shared};
 use crate::tokens::{Role, Tokens};
+use axum::body::Bytes;
 use crepitus_client::connection::Simulated;
 use crepitus_client::{Client, Error, Transport, TransportError};
 use crepitus_protocol::host::{Operation, Request};
@@ -19,6 +20,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, mpsc};
 use std::time::{Duration, Instant};
+use tokio::sync::broadcast;
 use tokio::sync::oneshot::Receiver;
 
 /// Delay of the answer to a disarm that is slow: less than the timeout of a request.
@@ -436,4 +438,46 @@ fn a_stop_goes_before_what_waits_and_nothing_from_before_it_arms() {
     device_thread.take_orders();
     assert_eq!(zeroed.try_recv(), Ok(Ok(Value::Null)));
     assert!(!device_thread.client.is_armed());
+}
+
+/// The number of samples that a page has received by now.
+fn received(listening: &mut broadcast::Receiver<Bytes>) -> usize {
+    let frames = std::iter::from_fn(|| listening.try_recv().ok());
+    let samples = frames.map(|frame| {
+        assert_eq!(frame[1], Kind::Samples as u8);
+        (frame.len() - HEADER) / 4
+    });
+    samples.sum()
+}
+
+/// It would tell which knee it is.
+#[test]
+fn a_page_that_listens_hears_the_torque_until_a_trial_hides_it() {
+    let program = Alone::default();
+    let mut device_thread = device_thread(&program);
+    let mut listening = device_thread.shared.samples.subscribe();
+    let began = Instant::now();
+    let mut heard = 0;
+    while heard < 1_000 {
+        device_thread.step();
+        heard += received(&mut listening);
+        assert!(began.elapsed() < Duration::from_secs(10), "{heard} samples");
+    }
+    let plan = json!({ "title": "One", "blind": true, "knees": [{ "preset": "coarse" }] });
+    let lesson = LessonBegin {
+        lesson: None,
+        plan: Some(plan),
+        students: vec!["A".to_owned()],
+        seed: Some(7),
+        repeats: None,
+    };
+    device_thread.begin_lesson(&lesson).expect("a lesson");
+    device_thread.start_trial().expect("a trial");
+    received(&mut listening);
+    let hidden = Instant::now();
+    while hidden.elapsed() < Duration::from_millis(100) {
+        device_thread.step();
+    }
+    assert!(hides(&device_thread));
+    assert_eq!(received(&mut listening), 0);
 }

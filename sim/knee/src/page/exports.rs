@@ -108,6 +108,18 @@ extern "C" fn phase() -> *const u32 {
     column(|columns| &columns.phase)
 }
 
+/// Measures of the examination.
+#[unsafe(no_mangle)]
+extern "C" fn examination() -> *const f32 {
+    with(|page| page.measures().as_ptr())
+}
+
+/// Steps of the examination that were done, a bit each.
+#[unsafe(no_mangle)]
+extern "C" fn steps() -> u32 {
+    with(|page| page.steps())
+}
+
 /// Ticks since `begin` in which a stick broke.
 #[unsafe(no_mangle)]
 extern "C" fn breaks() -> u32 {
