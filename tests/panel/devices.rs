@@ -6,6 +6,18 @@ use crate::support::stderr;
 use serde_json::json;
 use std::time::Duration;
 
+/// As a double-click opens it.
+#[test]
+fn without_a_brace_there_is_a_simulated_knee() {
+    let nothing = tempfile::tempdir().unwrap();
+    let served = Served::new();
+    for (runtime, is_simulated) in [(nothing.path(), true), (served.home.path(), false)] {
+        let panel = Panel::at(&["--or-sim"], Some(runtime));
+        let page = panel.teacher_page();
+        assert_eq!(page.latest["hello"]["source"]["simulated"], is_simulated);
+    }
+}
+
 #[test]
 fn it_joins_a_device_that_another_program_has_armed() {
     let served = Served::new();

@@ -200,5 +200,5 @@ fn answers_without_torque_do_not_count() {
         .collect();
     assert_eq!(counts, ["counts", "false", "true", "false"]);
     let report = fs::read_to_string(ended["report"].as_str().unwrap()).unwrap();
-    assert!(report.contains("left out: torque for 0 % of the time"));
+    assert!(report.contains("left out: the motor was on for 0 % of the time"));
 }

@@ -233,6 +233,9 @@ fn changes_are_one_commit_and_presets_are_kept() {
     assert!(page.latest["parameters"]["preset"].is_null());
     let save = json!({ "name": "monday-knee", "title": "Monday", "disorder": "spasticity" });
     page.ask("save-preset", save.clone()).unwrap();
+    page.until("its name", |page| {
+        page.latest["parameters"]["preset"] == "monday-knee"
+    });
     let own = |page: &Page| {
         let presets = page.latest["presets"].as_array().unwrap();
         presets
@@ -262,6 +265,41 @@ fn changes_are_one_commit_and_presets_are_kept() {
     });
     page.ask("reset", json!({})).unwrap();
     page.until("defaults", |page| value(page, "spasticity.render") == 0.0);
+    assert_eq!(page.latest["parameters"]["preset"], "coarse");
+}
+
+/// Nothing resists there: the page says that it hurts.
+#[test]
+fn an_empty_end_hurts_where_it_is_crossed() {
+    const HURTS: u32 = 1 << 8;
+    let panel = Panel::new(&SIM);
+    let mut page = panel.controlling();
+    page.ask("apply", json!({ "preset": "end-feel-empty" }))
+        .unwrap();
+    let table = page.latest["hello"]["parameters"].as_array().unwrap();
+    let limit = table
+        .iter()
+        .find(|p| p["name"] == "range-limit.flexion_limit_deg");
+    let changes = json!([[limit.unwrap()["id"], 60]]);
+    page.ask("set", json!({ "changes": changes })).unwrap();
+    page.arm();
+    page.frames.clear();
+    // A stroke to 80° and back takes four seconds.
+    page.go_on(Duration::from_secs(5));
+    let bins = (page.frames.iter()).flat_map(|frame| (0..frame.bins).map(move |bin| (frame, bin)));
+    let (mut beyond, mut before) = (0, 0);
+    for (frame, bin) in bins {
+        let hurts = frame.marks(bin) & HURTS != 0;
+        let [low_deg, high_deg] = [6, 7].map(|place| frame.value(bin, place).to_degrees());
+        if low_deg > 61.0 {
+            beyond += 1;
+            assert!(hurts, "at {low_deg}°");
+        } else if low_deg > 15.0 && high_deg < 59.0 {
+            before += 1;
+            assert!(!hurts, "at {low_deg}°");
+        }
+    }
+    assert!(beyond > 50 && before > 50, "{beyond} and {before} bins");
 }
 
 #[test]

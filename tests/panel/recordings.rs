@@ -15,10 +15,12 @@ fn a_recording_is_shown_in_full_detail() {
     page.ask("record", json!({ "running": true, "name": "first" }))
         .unwrap();
     page.go_on(Duration::from_secs(2));
-    let error = page
-        .ask("record", json!({ "running": true, "name": "../x" }))
-        .unwrap_err();
-    assert!(error.contains("invalid name"), "{error}");
+    for name in ["../x", "NUL"] {
+        let error = page
+            .ask("record", json!({ "running": true, "name": name }))
+            .unwrap_err();
+        assert!(error.contains("invalid name"), "{error}");
+    }
     page.ask("record", json!({ "running": false })).unwrap();
     let files = page.ask("recordings", json!({})).unwrap();
     let id = files["files"][0]["id"].as_u64().unwrap();

@@ -160,6 +160,10 @@ impl Frame {
     pub(crate) fn states(&self, bin: u16) -> u32 {
         self.value(bin, 10).to_bits()
     }
+
+    pub(crate) fn marks(&self, bin: u16) -> u32 {
+        self.value(bin, 11).to_bits() >> 16
+    }
 }
 
 /// A page, as the server sees it.

@@ -63,7 +63,7 @@ test("everything can be done without a mouse", async () => {
   await press("Take control");
   await page.locator("#holder", { hasText: "you" }).waitFor();
   await page.evaluate(() => document.activeElement.blur());
-  await press("Arm");
+  await press("Motor on");
   await untilState(page, "armed");
   await page.keyboard.press("n");
   await page.keyboard.type("caught at half");

@@ -111,6 +111,134 @@ test("a simulated examiner stretches MAS 1 fast, and the page measures the catch
   assert.deepEqual(page.problems, []);
 });
 
+test("a sentence says what to do next, from the first look to the examination", async () => {
+  const panel = await startPanel();
+  const viewer = await openLive(panel.viewer);
+  await viewer.locator("#next", { hasText: "Watch. “STOP” and Esc" }).waitFor();
+  const page = await openLive(panel.teacher);
+  const next = (words) => page.locator("#next", { hasText: words }).waitFor();
+  await next("Press “Take control”");
+  await page.getByRole("button", { name: "Take control" }).click();
+  await next("“Coarse crepitus” is on the device. Press “Motor on”");
+  await arm(page);
+  await next("Feel for: coarse grating");
+  await page.locator('[data-disorder="healthy"]').getByRole("button", { name: "Apply" }).click();
+  await next("the knee is healthy: choose another one in “Knee”");
+  await page.keyboard.press("Escape");
+  await next("Choose a knee in “Knee”, press “Apply”, then “Motor on”");
+  await page.locator("#language").selectOption("de");
+  await next("Wählen Sie in „Knie“ ein Knie");
+  assert.deepEqual([...page.problems, ...viewer.problems], []);
+});
+
+test("the knee on the device is named, and its card alone says so", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  const current = () =>
+    page.evaluate(() => [...document.querySelectorAll(".card.current")].map((card) => card.dataset.disorder));
+  await page.locator("#knee-now", { hasText: "Coarse crepitus" }).waitFor();
+  assert.equal(await page.locator(".cards > .card").first().getAttribute("data-disorder"), "crepitus");
+  const spasticity = page.locator('[data-disorder="spasticity"]');
+  await spasticity.getByRole("radio", { name: /MAS 3.*reflex/ }).check({ force: true });
+  assert.deepEqual(await current(), ["crepitus"]);
+  await spasticity.getByRole("button", { name: "Apply" }).click();
+  await spasticity.getByText("on the device").waitFor();
+  assert.deepEqual(await current(), ["spasticity"]);
+  // One number of one's own.
+  await page.getByText("All parameters").click();
+  await page.getByLabel("Search parameters").fill("spasticity.threshold_deg");
+  const threshold = page.locator('[data-parameter="spasticity.threshold_deg"] input');
+  const before = await threshold.inputValue();
+  for (const [value, name] of [["61", "your own values"], [before, "MAS 3"]]) {
+    await threshold.fill(value);
+    await page.getByRole("button", { name: "Apply changes (1)" }).click();
+    await page.locator("#knee-now", { hasText: name }).waitFor();
+  }
+});
+
+test("a knee is saved with a name alone, and a blind lesson takes it", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  const save = async (file, replaces) => {
+    await page.locator("#save-preset").click();
+    const dialog = page.getByRole("dialog");
+    assert.equal(await dialog.getByLabel("Disorder").inputValue(), "crepitus");
+    await dialog.getByLabel("Name of the knee").fill("Raues Knie für Übung 2");
+    const replace = dialog.getByLabel("replace the saved knee");
+    assert.equal(await replace.isVisible(), replaces !== null);
+    if (replaces) await replace.check();
+    await dialog.getByRole("button", { name: "Save" }).click();
+    await page.locator("#message", { hasText: `in the file ${file}.toml` }).waitFor();
+  };
+  await save("raues-knie-fuer-uebung-2", null);
+  await save("raues-knie-fuer-uebung-2-2", false);
+  await save("raues-knie-fuer-uebung-2", true);
+  await page.getByRole("tab", { name: "Lesson" }).click();
+  await page.getByRole("radio", { name: "A lesson of your own" }).check({ force: true });
+  await page.getByLabel("Knee 1", { exact: true }).selectOption("raues-knie-fuer-uebung-2");
+  await page.getByRole("button", { name: "Begin the lesson" }).click();
+  await page.getByRole("button", { name: "Start this knee" }).waitFor();
+  assert.deepEqual(page.problems, []);
+});
+
+test("axes stay while the leg moves, and torque that nobody feels is dashed", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  await page.evaluate(() => {
+    const { prototype } = CanvasRenderingContext2D;
+    const { setLineDash } = prototype;
+    window.dashes = 0;
+    prototype.setLineDash = function (dash) {
+      if (dash.length) window.dashes++;
+      setLineDash.call(this, dash);
+    };
+  });
+  const dashes = async () => {
+    await page.evaluate(() => (window.dashes = 0));
+    await page.waitForTimeout(500);
+    return page.evaluate(() => window.dashes);
+  };
+  await page.getByRole("radio", { name: "5 s", exact: true }).check({ force: true });
+  assert.ok((await dashes()) > 0);
+  await arm(page);
+  const seen = new Set();
+  for (let nth = 0; nth < 70; nth++) {
+    seen.add(JSON.stringify(await page.evaluate(() => window.crepitusStats.ranges)));
+    await page.waitForTimeout(100);
+  }
+  assert.deepEqual([...seen], ["[[-1,1],[-130,130],[-10,130]]"]);
+  assert.equal(await dashes(), 0);
+});
+
+test("an empty end-feel says that it hurts, in words on every page and aloud on the one that controls", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  const viewer = await openLive(panel.viewer);
+  for (const one of [page, viewer]) {
+    await one.evaluate(() => {
+      window.said = [];
+      speechSynthesis.speak = ({ text }) => window.said.push(text);
+    });
+  }
+  const endFeel = page.locator('[data-disorder="end-feel"]');
+  await endFeel.getByRole("radio", { name: "Empty end-feel" }).check({ force: true });
+  await endFeel.getByRole("button", { name: "Apply" }).click();
+  await page.getByText("All parameters").click();
+  await page.getByLabel("Search parameters").fill("flexion_limit");
+  await page.locator('[data-parameter="range-limit.flexion_limit_deg"] input').fill("60");
+  await page.getByRole("button", { name: "Apply changes (1)" }).click();
+  await page.locator("#knee-now", { hasText: "your own values" }).waitFor();
+  assert.ok(!(await page.locator("#pain").isVisible()), "the motor is off");
+  await arm(page);
+  await Promise.all([page, viewer].map((one) => one.locator("#pain", { hasText: "That hurts" }).waitFor()));
+  assert.deepEqual(await viewer.evaluate(() => window.said), []);
+  assert.match(String(await page.evaluate(() => window.said)), /^Ouch! That hurts/);
+  // It is heard once while the leg stays there, and the words go.
+  await page.keyboard.press("Escape");
+  await until(page, "quiet", () => document.getElementById("pain").hidden);
+  assert.deepEqual([...page.problems, ...viewer.problems], []);
+});
+
 test("another language is one file away", async () => {
   const panel = await startPanel();
   const page = await openControlling(panel.teacher);
@@ -121,7 +249,7 @@ test("another language is one file away", async () => {
   await page.getByRole("tab", { name: "Aufzeichnungen" }).waitFor();
   // Every text has a translation: no key is left on the page.
   const text = await page.evaluate(() => document.body.innerText);
-  assert.ok(!/\b(control|knee|lesson|target|chart|state)\.[a-z-]+/.test(text), text);
+  assert.ok(!/\b(control|knee|lesson|next|target|chart|state)\.[a-z-]+/.test(text), text);
 });
 
 test("the first curve comes within a second, and frames join", async () => {

@@ -19,7 +19,7 @@ test("six knees blind, two students, to the printed report", async () => {
   await page.getByRole("tab", { name: "Lesson" }).click();
   await page.getByRole("radio", { name: /Six knees/ }).check({ force: true });
   await page.getByLabel("Pseudonyms").fill("A\nB");
-  await page.getByLabel("Seed of the order").fill("7");
+  await page.getByLabel("Number of the order").fill("7");
   await page.getByRole("button", { name: "Begin the lesson" }).click();
   for (let trial = 1; trial <= 6; trial++) {
     await page.getByText(`Knee ${trial} of 6`).waitFor();

@@ -32,7 +32,7 @@ async function lesson(page) {
   await tab(page, "Lesson");
   await page.getByRole("radio", { name: /Six knees/ }).check({ force: true });
   await page.getByLabel("Pseudonyms").fill("A\nB");
-  await page.getByLabel("Seed of the order").fill("7");
+  await page.getByLabel("Number of the order").fill("7");
 }
 
 if (isBook) {

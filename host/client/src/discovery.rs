@@ -1,7 +1,8 @@
 //! Discovery of devices, on USB and simulated.
 //!
 //! A device on USB is a serial port with the project's vendor and product id
-//! *and* its name: the ids are shared with other free projects.
+//! *and* its name: the ids are shared with other free projects. Windows does not
+//! tell the name; there the handshake rejects what is none of ours.
 //!
 //! A simulated device is a pty with a symbolic link in [`simulated_folder`]; the
 //! link's name is the device's. A link that no program serves is ignored, and
@@ -79,7 +80,7 @@ pub fn usb_devices() -> Result<Vec<Device>, DiscoveryError> {
         // A port of macOS has two names; opening this one waits for a modem.
         .filter(|port| !port.port_name.starts_with("/dev/tty."))
         .filter_map(|port| match port.port_type {
-            SerialPortType::UsbPort(usb) if is_ours(&usb) => Some(Device {
+            SerialPortType::UsbPort(usb) if is_ours(&usb, TELLS_PRODUCT) => Some(Device {
                 port: port.port_name,
                 kind: DeviceKind::Usb {
                     serial_number: usb.serial_number,
@@ -92,10 +93,15 @@ pub fn usb_devices() -> Result<Vec<Device>, DiscoveryError> {
     Ok(devices)
 }
 
-fn is_ours(usb: &UsbPortInfo) -> bool {
+/// Whether the system tells the name of a product. Windows has that of its driver in its place: "USB Serial Device
+/// (COM3)", in the user's language.
+const TELLS_PRODUCT: bool = !cfg!(windows);
+
+fn is_ours(usb: &UsbPortInfo, tells_product: bool) -> bool {
     // Systems differ in spaces and case of the name.
     let is_named = |name: &str| name.to_lowercase().contains(&PRODUCT.to_lowercase());
-    (usb.vid, usb.pid) == (VENDOR_ID, PRODUCT_ID) && usb.product.as_deref().is_some_and(is_named)
+    (usb.vid, usb.pid) == (VENDOR_ID, PRODUCT_ID)
+        && (!tells_product || usb.product.as_deref().is_some_and(is_named))
 }
 
 /// Folder of simulated devices, of this user alone: see [`user_folder`].
@@ -221,11 +227,15 @@ mod tests {
             manufacturer: None,
             product: product.map(str::to_owned),
         };
-        assert!(is_ours(&usb(VENDOR_ID, Some("Crepitus"))));
-        assert!(is_ours(&usb(VENDOR_ID, Some("crepitus_comms"))));
-        assert!(!is_ours(&usb(VENDOR_ID, Some("Blinky"))));
-        assert!(!is_ours(&usb(VENDOR_ID, None)));
-        assert!(!is_ours(&usb(1, Some("Crepitus"))));
+        assert!(is_ours(&usb(VENDOR_ID, Some("Crepitus")), true));
+        assert!(is_ours(&usb(VENDOR_ID, Some("crepitus_comms")), true));
+        assert!(!is_ours(&usb(VENDOR_ID, Some("Blinky")), true));
+        assert!(!is_ours(&usb(VENDOR_ID, None), true));
+        assert!(!is_ours(&usb(1, Some("Crepitus")), true));
+        // As Windows lists it.
+        let of_driver = Some("Serielles USB-Gerät (COM3)");
+        assert!(is_ours(&usb(VENDOR_ID, of_driver), false));
+        assert!(!is_ours(&usb(1, of_driver), false));
     }
 
     #[test]

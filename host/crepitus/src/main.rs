@@ -3,6 +3,7 @@
 mod cli;
 mod crash_text;
 mod device_command;
+mod double_click;
 mod failure;
 mod following;
 mod interrupt;
@@ -30,11 +31,22 @@ use clap::Parser;
 use cli::Cli;
 use failure::Failure;
 use std::env;
+use std::ffi::OsString;
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let arguments = pictures::joined(env::args_os());
+    let Some(command) = double_click::command() else {
+        return run(env::args_os());
+    };
+    let code = run(command);
+    double_click::keep_window();
+    code
+}
+
+/// Runs a command, whose first word is the program's name.
+fn run(command: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = pictures::joined(command);
     let cli = Cli::try_parse_from(&arguments).map_err(|error| {
         // The error repeats the arguments: parse them again, escaped.
         let shown = arguments

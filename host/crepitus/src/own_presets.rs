@@ -1,6 +1,7 @@
 //! The user's own presets: a folder of files in the form of those that ship.
 
 use crate::failure::{Failure, warn};
+use crepitus_files::names::is_reserved;
 use crepitus_files::output::{Inputs, NewFile};
 use crepitus_scene::preset::{self, Disorder, Preset};
 use crepitus_scene::similar::{question, similar};
@@ -14,9 +15,6 @@ pub(crate) const FOLDER_VARIABLE: &str = "CREPITUS_PRESETS";
 
 /// The longest name.
 const MOST_CHARACTERS: usize = 60;
-
-/// Names that a file cannot have on Windows.
-const RESERVED: [&str; 4] = ["con", "prn", "aux", "nul"];
 
 /// The folder: `CREPITUS_PRESETS`, or `crepitus/presets` in the user's configuration.
 pub(crate) fn folder() -> Result<PathBuf, Failure> {
@@ -54,11 +52,7 @@ pub(crate) fn check_name(name: &str) -> Result<(), Failure> {
     if name.len() > MOST_CHARACTERS {
         return no(&format!("expected up to {MOST_CHARACTERS} characters"));
     }
-    let numbered = |word: &str| {
-        let digit = name.strip_prefix(word);
-        digit.is_some_and(|digit| matches!(digit.as_bytes(), [b'1'..=b'9']))
-    };
-    if RESERVED.contains(&name) || numbered("com") || numbered("lpt") {
+    if is_reserved(name) {
         return no("Windows has no file of this name");
     }
     if preset::find(name).is_some() {

@@ -230,7 +230,7 @@ fn in_final_format(file: &Path, id: &str) -> Result<(), Failure> {
         let file = file.display();
         return Err(lost(&format!("{file} is another recording now")));
     }
-    let made = replaced(&recording, file, id, writer);
+    let made = replaced(recording, file, id, writer);
     if let Err(Failure::Input(error) | Failure::Work(error)) = made {
         warn(format!(
             "{error}; {} is whole, in the format of a recording in progress: `crepitus export {} \
@@ -243,13 +243,15 @@ fn in_final_format(file: &Path, id: &str) -> Result<(), Failure> {
 }
 
 /// Replaces the file of this recording, and no other, by another format of it.
-fn replaced(recording: &Recording, file: &Path, id: &str, writer: Write) -> Result<(), Failure> {
+fn replaced(recording: Recording, file: &Path, id: &str, writer: Write) -> Result<(), Failure> {
     let failed = |error: io::Error| Failure::at(file, "cannot be written", &error);
     let new = temporary_in(folder_of(file)).map_err(failed)?;
-    written(recording, file, new.as_file(), writer)?;
+    written(&recording, file, new.as_file(), writer)?;
     if !is_recording(file, id) {
         return Err(lost(&format!("{} is another file now", file.display())));
     }
+    // Windows replaces no file that is open.
+    drop(recording);
     new.persist(file).map_err(|error| failed(error.error))?;
     // The name, too, outlives a power cut.
     sync_folder_of(file).map_err(failed)

@@ -6,11 +6,13 @@
 //! a path ──> input   a regular file up to a stated size, or an error that says what it is
 //! bytes  ──> table   names, units and rows, in whatever form a laboratory writes them
 //! a path <── output  a folder that this program owns: nothing foreign is replaced or removed
+//! a name ──> names   whether every system has a file of it
 //! ```
 #![forbid(unsafe_code)]
 
 pub mod characters;
 pub mod input;
+pub mod names;
 pub mod output;
 pub mod table;
 

@@ -11,6 +11,7 @@ export const MARK = {
   lost: 32,
   late: 64,
   gap: 128,
+  hurts: 256,
 };
 
 const HEADER = 40;

@@ -2,7 +2,7 @@
 // and the selection by dragging; the curves are painted here from bins.
 
 import uPlot from "./vendor/uPlot.esm.js";
-import { indexAt } from "./bins.js";
+import { indexAt, MARK } from "./bins.js";
 import { el, setText } from "./dom.js";
 import { Colours, paintEnvelope, paintMark, paintShades } from "./paint.js";
 import { shadesIn } from "./states.js";
@@ -11,11 +11,17 @@ import { number, text } from "./strings.js";
 /** The colours of every chart of the page. */
 export const colours = new Colours();
 
+// `ranges` are those of the live view, each inside the next: an axis takes the first that its curves fit into.
 const PANES = [
   {
     name: "torque",
     unit: "N·m",
     least: 1,
+    ranges: [
+      [-1, 1],
+      [-2.5, 2.5],
+      [-7, 7],
+    ],
     curves: [
       // Below the commanded torque, and wider: where both agree it is a rim.
       { low: "modelLow", high: "modelHigh", colour: "--model", fill: 0.15, width: 3.5 },
@@ -26,18 +32,39 @@ const PANES = [
     name: "speed",
     unit: "°/s",
     least: 40,
+    ranges: [
+      [-130, 130],
+      [-360, 360],
+    ],
     curves: [{ low: "speedLow", high: "speedHigh", colour: "--speed", fill: 0.35, width: 1.5 }],
   },
   {
     name: "angle",
     unit: "°",
     least: 20,
+    ranges: [
+      [-10, 130],
+      [-40, 190],
+    ],
     curves: [{ low: "angleLow", high: "angleHigh", colour: "--angle", fill: 0.35, width: 2 }],
   },
 ];
 
 // The second of two recordings: other colours, and dashes.
 const SECOND = { torque: "--second-torque", speed: "--second-speed", angle: "--second-angle" };
+
+/** Stretches of bins with the motor on and off; each reaches to the first bin of the next one. */
+function stretches(marks, from, to) {
+  const found = [];
+  for (let i = from; i < to; i++) {
+    // A gap draws nothing.
+    const isOn = (marks[i] & (MARK.energised | MARK.gap)) !== 0;
+    const last = found.at(-1);
+    if (last) last.to = i + 1;
+    if (last?.isOn !== isOn) found.push({ from: i, to: i + 1, isOn });
+  }
+  return found;
+}
 
 const rootSize = () => Number.parseFloat(getComputedStyle(document.documentElement).fontSize);
 
@@ -53,7 +80,7 @@ function decimals(step) {
 /** Charts of bins that share a time axis. */
 export class Charts {
   /**
-   * `live`: times count back from the right edge, ranges change calmly.
+   * `live`: times count back from the right edge, and axes do not follow the curves.
    * `onRange(from, to)`: a range was dragged.
    */
   constructor(host, { live, onRange = null }) {
@@ -66,6 +93,7 @@ export class Charts {
     this.band = null;
     this.notes = [];
     this.playhead = null;
+    this.since = -Infinity;
     this.masked = { torque: false, states: false };
     this.panes = PANES.map((pane, i) => this.makePane(pane, i === PANES.length - 1));
     new ResizeObserver(() => this.resize()).observe(host);
@@ -86,7 +114,7 @@ export class Charts {
       ticks: { stroke: () => colours.get("--grid"), size: 4 },
       grid: { stroke: () => colours.get("--grid"), width: 1 },
     };
-    const state = { ...pane, title, masked, box, low: NaN, high: NaN };
+    const state = { ...pane, title, masked, box, low: NaN, high: NaN, rung: 0 };
     state.plot = new uPlot(
       {
         width: 300,
@@ -166,12 +194,21 @@ export class Charts {
     this.refresh();
   }
 
+  // Height for the plots of the live view where it stands beside the tabs: what others leave of the window.
+  room() {
+    const top = Number.parseFloat(document.documentElement.style.getPropertyValue("--top")) || 0;
+    const plots = this.panes.reduce((sum, { box }) => sum + box.offsetHeight, 0);
+    const titles = this.host.offsetHeight - plots;
+    // The time axis, and the legend below.
+    return innerHeight - top - this.host.offsetTop - titles - rootSize() * 5;
+  }
+
+  /** Gives the plots the size that there is for them. */
   resize() {
     const width = Math.floor(this.host.clientWidth);
     if (width < 50) return;
-    // Beside the tabs all three fit on one screen, below what stands over them.
     const beside = this.live && matchMedia("(min-width: 1100px)").matches;
-    const room = beside ? (innerHeight - rootSize() * 28.5) / 3 : innerHeight * 0.16;
+    const room = beside ? this.room() / this.panes.length : innerHeight * 0.16;
     const height = Math.round(Math.max(rootSize() * (beside ? 5.5 : 7), Math.min(room, rootSize() * 22)));
     for (const pane of this.panes) {
       const extra = pane === this.panes.at(-1) ? rootSize() : 0;
@@ -207,14 +244,24 @@ export class Charts {
     }
   }
 
+  /** Begins with the narrowest axes: what is after this time decides how wide they become. */
+  settle(time) {
+    this.since = time;
+    for (const pane of this.panes) pane.rung = 0;
+  }
+
   rangeOf(pane) {
     let low = Infinity;
     let high = -Infinity;
     for (const layer of this.layers) {
+      const { columns, begin, end } = layer.bins;
+      // Times begin again where the device does.
+      const isPast = end > begin && this.since <= columns.t[end - 1];
+      const from = isPast ? Math.max(layer.from, indexAt(columns.t, begin, end, this.since)) : layer.from;
       for (const curve of pane.curves) {
-        const lows = layer.bins.columns[curve.low];
-        const highs = layer.bins.columns[curve.high];
-        for (let i = layer.from; i < layer.to; i++) {
+        const lows = columns[curve.low];
+        const highs = columns[curve.high];
+        for (let i = from; i < layer.to; i++) {
           if (lows[i] < low) low = lows[i];
           if (highs[i] > high) high = highs[i];
         }
@@ -226,21 +273,24 @@ export class Charts {
       low = Math.min(low, -reach);
       high = Math.max(high, reach);
     }
+    if (this.live) return this.widen(pane, low, high);
     if (low > high) {
       low = -pane.least / 2;
       high = pane.least / 2;
     }
     const span = Math.max(pane.least, (high - low) * 1.12);
     const middle = (high + low) / 2;
-    const want = { low: middle - span / 2, high: middle + span / 2 };
-    // A live axis that moved with every spike could not be read: it grows at
-    // once, a little further than needed, and shrinks when it is far too large.
-    const tooSmall = !(low >= pane.low && high <= pane.high);
-    const tooLarge = pane.high - pane.low > 2.2 * span;
-    if (this.live && !tooSmall && !tooLarge) return;
-    const more = this.live ? span * 0.08 : 0;
-    pane.low = want.low - more;
-    pane.high = want.high + more;
+    pane.low = middle - span / 2;
+    pane.high = middle + span / 2;
+  }
+
+  // An axis that moved while one watches could not be read: it takes the next range at once, and none before.
+  widen(pane, low, high) {
+    const isOutside = ([least, most]) => low < least || high > most;
+    while (pane.rung < pane.ranges.length - 1 && isOutside(pane.ranges[pane.rung])) pane.rung++;
+    const [least, most] = pane.ranges[pane.rung];
+    pane.low = Math.min(least, low);
+    pane.high = Math.max(most, high);
   }
 
   mapOf(u) {
@@ -308,14 +358,23 @@ export class Charts {
       this.layers.forEach(({ bins, from, to, offset = 0 }, nth) => {
         const { columns } = bins;
         const shifted = offset ? { ...map, x: (time) => map.x(time + offset) } : map;
+        const parts =
+          pane.name === "torque" ? stretches(columns.marks, from, to) : [{ from, to, isOn: true }];
         for (const curve of pane.curves) {
           if (nth > 0 && curve.low === "modelLow") continue;
-          paintEnvelope(ctx, shifted, columns.t, columns[curve.low], columns[curve.high], from, to, {
+          const look = {
             colour: colours.get(nth > 0 ? SECOND[pane.name] : curve.colour),
             fill: nth > 0 ? 0.12 : curve.fill,
             width: curve.width * scale,
             dash: nth > 0 ? [7 * scale, 4 * scale] : null,
-          });
+          };
+          // Torque that nobody feels is thin and dashed; that of a motor that is off is 0.
+          const unfelt = { ...look, fill: 0, width: scale, dash: [2 * scale, 3 * scale] };
+          for (const part of parts) {
+            if (!part.isOn && curve.low !== "modelLow") continue;
+            const [low, high] = [columns[curve.low], columns[curve.high]];
+            paintEnvelope(ctx, shifted, columns.t, low, high, part.from, part.to, part.isOn ? look : unfelt);
+          }
         }
       });
       for (const note of this.notes) {

@@ -1,5 +1,5 @@
-// The header: state, who controls, control buttons with the reason why one is
-// disabled, stop, faults.
+// The header: state, who controls, what to do next, control buttons with the reason why
+// one is disabled, stop, faults.
 
 import { ask, isController, isReplay, isTeacher, keyFault, latest, on } from "./connection.js";
 import { byId, el, setText } from "./dom.js";
@@ -7,7 +7,8 @@ import { confirmed } from "./dialogs.js";
 import { request, say } from "./report.js";
 import { startStop } from "./stop.js";
 import { number, onLanguage, text, textOr } from "./strings.js";
-import { kneeName } from "./names.js";
+import { answerOf, kneeName, presetOf, presetText } from "./names.js";
+import { nextSentence } from "./next.js";
 
 let link = "connecting";
 let lastMessage = null;
@@ -73,12 +74,37 @@ function showControls() {
   const lines = [...grouped].map(([key, names]) => `${names.join(", ")}: ${text(key)}.`);
   setText(byId("why"), lines.join(" "));
   setText(byId("take"), text(isController() ? "control.release" : "control.take"));
-  setText(byId("zero-hint"), byId("zero").disabled ? "" : text("control.zero-hint"));
   setText(byId("friction"), frictionHint());
   const holder = latest.holder;
   const who = isController() ? "holder.you" : holder?.taken ? "holder.other" : "holder.nobody";
   const other = latest.status?.other;
   setText(byId("holder"), link !== "open" ? "–" : other ? text("holder.program", { name: other }) : text(who));
+}
+
+function showNext() {
+  const { status, lesson, parameters } = latest;
+  const preset = presetOf(parameters?.preset);
+  const facts = {
+    state: stateName(),
+    isTeacher: isTeacher(),
+    isController: isController(),
+    other: Boolean(status?.other),
+    hasFault: status?.faults?.some((fault) => !fault.coil),
+    isZeroed: status?.zeroed,
+    lesson,
+    isAnswered: lesson?.students.every((student) => answerOf(lesson, student)),
+    isHealthy: parameters?.preset === "healthy",
+    knee: kneeName(),
+    feel: preset && presetText(preset, "feel"),
+  };
+  setText(byId("next"), nextSentence(facts));
+}
+
+// In one line; what the system says about it is for those who ask.
+function showLoss() {
+  const isLost = stateName() === "device-lost";
+  byId("lost").hidden = !isLost;
+  setText(byId("lost-detail"), isLost ? (latest.status.message ?? "") : "");
 }
 
 function showState() {
@@ -94,7 +120,9 @@ function showState() {
       ? "–"
       : isReplay()
         ? text("header.file")
-        : [source.name, source.serial].filter(Boolean).join(" · "),
+        : source.simulated
+          ? text("header.simulated")
+          : [source.name, source.serial].filter(Boolean).join(" · "),
   );
   setText(byId("knee-now"), kneeName());
   showControls();
@@ -123,12 +151,14 @@ function showFaults() {
   const items = faults.map(({ code, coil }) => {
     const table = coil ? latest.hello?.coil_faults : latest.hello?.faults;
     const fault = table?.find((entry) => entry.code === code) ?? { code, name: "?", cause: "", remedy: "" };
+    // The command of the terminal is a button here.
+    const remedy = fault.remedy.replace("clear-fault", text("fault.clear-named"));
     return el(
       "div",
       { class: "fault" },
       el("strong", null, text(coil ? "fault.coil-title" : "fault.title", fault)),
       el("p", null, text("fault.cause", fault)),
-      el("p", null, text("fault.remedy", fault)),
+      el("p", null, text("fault.remedy", { remedy })),
       coil ? null : bookPage(code),
     );
   });
@@ -152,7 +182,7 @@ async function take() {
 
 function showMessage() {
   const message = latest.status?.message ?? null;
-  if (message && message !== lastMessage) say(message);
+  if (message && message !== lastMessage && stateName() !== "device-lost") say(message);
   lastMessage = message;
 }
 
@@ -170,6 +200,8 @@ function showTorqueEnd() {
 
 function update() {
   showState();
+  showNext();
+  showLoss();
   showTorqueEnd();
   showFaults();
 }

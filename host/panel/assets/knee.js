@@ -3,17 +3,21 @@
 
 import { latest, on } from "./connection.js";
 import { controlReason } from "./control.js";
-import { askForm } from "./dialogs.js";
-import { byId, el, field, freshId, setText, tick } from "./dom.js";
+import { byId, el, freshId, setText } from "./dom.js";
 import { buildDrawer, updateDrawer } from "./drawer.js";
 import { evidenceTag } from "./labels.js";
 import { disorderName, kneeName, presets, presetText } from "./names.js";
 import { request } from "./report.js";
+import { saveKnee } from "./save-knee.js";
 import { onLanguage, text, textOr } from "./strings.js";
+
+// The knee that the project is named for is the first card.
+const FIRST = "crepitus";
 
 const chosen = new Map();
 let cards = [];
 let view = null;
+let onDevice = null;
 
 const LEVELS = [null, "mild", "moderate", "severe"];
 const grade = (preset) => presetText(preset, "severity").split(":")[0];
@@ -48,21 +52,29 @@ function describe(card, preset) {
   card.preset = preset;
 }
 
+function choose(card, preset) {
+  chosen.set(card.disorder, preset.name);
+  describe(card, preset);
+}
+
+const deviceTag = () => el("span", { class: "tag yes", hidden: true }, text("knee.on-device"));
+
 function makeCard(disorder, list) {
   const name = freshId("severity");
   const card = { disorder, about: el("div", { class: "card-about" }) };
   const first = list.find((preset) => preset.name === chosen.get(disorder)) ?? list[0];
-  const choices = list.map((preset) => {
+  card.choices = list.map((preset) => {
     const input = el("input", { type: "radio", name, value: preset.name, checked: preset === first });
     input.addEventListener("change", () => {
-      chosen.set(disorder, preset.name);
-      describe(card, preset);
+      choose(card, preset);
       update();
     });
-    return el("label", { class: "severity" }, input, el("span", null, choiceName(preset, list)));
+    const root = el("label", { class: "severity" }, input, el("span", null, choiceName(preset, list)));
+    return { preset, input, root };
   });
   const title = freshId("disorder");
-  card.apply = el("button", { type: "button", class: "primary apply" }, text("knee.apply"));
+  card.tag = deviceTag();
+  card.apply = el("button", { type: "button", class: "apply" }, text("knee.apply"));
   card.add = el("button", { type: "button", class: "add" }, text("knee.add"));
   card.apply.addEventListener("click", () => request("apply", { preset: card.preset.name, add: false }));
   card.add.addEventListener("click", () => request("apply", { preset: card.preset.name, add: true }));
@@ -70,13 +82,13 @@ function makeCard(disorder, list) {
   card.root = el(
     "section",
     { class: "card", "data-disorder": disorder, "aria-labelledby": title },
-    el("h3", { id: title }, disorderName(disorder)),
+    el("div", { class: "card-head" }, el("h3", { id: title }, disorderName(disorder)), card.tag),
     zero && el("p", { class: "hint" }, textOr(`grade0.${disorder}`, zero)),
     el(
       "fieldset",
       { class: "severities" },
       el("legend", { class: "hidden" }, text("knee.severity")),
-      ...choices,
+      ...card.choices.map(({ root }) => root),
     ),
     card.about,
     el("div", { class: "row" }, card.apply, card.add),
@@ -86,72 +98,18 @@ function makeCard(disorder, list) {
 }
 
 function healthyCard() {
-  const card = { disorder: "healthy", preset: { name: "healthy" } };
-  card.apply = el("button", { type: "button", class: "primary apply" }, text("knee.apply"));
+  const preset = { name: "healthy" };
+  const card = { disorder: "healthy", preset, choices: [], tag: deviceTag() };
+  card.apply = el("button", { type: "button", class: "apply" }, text("knee.apply"));
   card.apply.addEventListener("click", () => request("apply", { preset: "healthy", add: false }));
   card.root = el(
     "section",
     { class: "card", "data-disorder": "healthy" },
-    el("h3", null, text("knee.healthy")),
+    el("div", { class: "card-head" }, el("h3", null, text("knee.healthy")), card.tag),
     el("p", { class: "feel" }, text("knee.healthy-feel")),
     el("div", { class: "row" }, card.apply),
   );
   return card;
-}
-
-async function savePreset() {
-  const title = el("input", { name: "title", required: true, maxlength: 80 });
-  const name = el("input", {
-    name: "name",
-    required: true,
-    maxlength: 40,
-    pattern: "[a-z0-9]+(-[a-z0-9]+)*",
-  });
-  // The name follows the title until it is written by hand.
-  let typed = false;
-  name.addEventListener("input", () => (typed = true));
-  title.addEventListener("input", () => {
-    if (!typed)
-      name.value = title.value
-        .toLowerCase()
-        .replace(/[^a-z0-9]+/g, "-")
-        .replace(/^-|-$/g, "")
-        .slice(0, 40);
-  });
-  const disorders = latest.hello.disorders.map(({ name }) =>
-    el("option", { value: name }, disorderName(name)),
-  );
-  const data = await askForm(
-    text("preset.save-title"),
-    [
-      field(text("preset.title"), title),
-      field(text("preset.name"), name, text("preset.name-hint")),
-      field(
-        text("preset.disorder"),
-        el("select", { name: "disorder" }, el("option", { value: "" }, disorderName("")), disorders),
-      ),
-      field(text("preset.severity"), el("input", { name: "severity", maxlength: 120 })),
-      field(text("preset.feel"), el("textarea", { name: "feel", rows: 2, maxlength: 300 })),
-      field(text("preset.source"), el("input", { name: "source", maxlength: 300 })),
-      tick(text("preset.replace"), el("input", { type: "checkbox", name: "replace" })),
-    ],
-    text("preset.save"),
-  );
-  if (!data) return;
-  const get = (key) => String(data.get(key) ?? "").trim();
-  await request(
-    "save-preset",
-    {
-      name: get("name"),
-      title: get("title"),
-      feel: get("feel"),
-      severity: get("severity"),
-      source: get("source"),
-      disorder: get("disorder") || null,
-      replace: data.has("replace"),
-    },
-    text("preset.saved", { title: get("title") }),
-  );
 }
 
 /** Builds the drawer when it is open: a hundred parameters take a tenth of the time until the first curve. */
@@ -170,10 +128,13 @@ function build() {
       .sort(byLevel),
   ]);
   groups.push(["", presets().filter((preset) => !known.includes(preset.disorder))]);
-  cards = [
-    healthyCard(),
-    ...groups.filter(([, list]) => list.length).map(([name, list]) => makeCard(name, list)),
-  ];
+  const [first, others] = [true, false].map((isFirst) =>
+    groups
+      .filter(([name, list]) => list.length && (name === FIRST) === isFirst)
+      .map(([name, list]) => makeCard(name, list)),
+  );
+  cards = [...first, healthyCard(), ...others];
+  onDevice = null;
   view = {
     why: el("p", { class: "hint" }),
     now: el("p"),
@@ -187,7 +148,7 @@ function build() {
       { type: "button", onclick: () => request("save", {}, text("knee.saved")) },
       text("knee.save"),
     ),
-    preset: el("button", { type: "button", id: "save-preset", onclick: savePreset }, text("preset.save-as")),
+    preset: el("button", { type: "button", id: "save-preset", onclick: saveKnee }, text("preset.save-as")),
     drawer: el("div", { class: "drawer" }),
   };
   const drawer = el(
@@ -220,17 +181,26 @@ function update() {
   const unsaved = latest.parameters?.saved === false ? ` · ${text("knee.unsaved")}` : "";
   setText(view.now, text("knee.now", { knee: kneeName() }) + unsaved);
   for (const button of [view.reset, view.save, view.preset]) button.disabled = why !== "";
-  const preset = latest.parameters?.preset;
+  const preset = (!hidden && latest.parameters?.preset) || null;
+  const isOther = preset !== onDevice;
+  onDevice = preset;
   for (const card of cards) {
     card.apply.disabled = why !== "";
     if (card.add) card.add.disabled = why !== "";
-    const current =
-      !hidden &&
-      (card.disorder === "healthy"
-        ? kneeName() === text("knee.healthy")
-        : Boolean(preset) && card.preset.name === preset);
+    // The card of the knee that comes onto the device shows it; what is chosen on the others waits.
+    for (const choice of card.choices) {
+      const isCurrent = choice.preset.name === preset;
+      choice.root.classList.toggle("current", isCurrent);
+      if (isCurrent && isOther) {
+        choice.input.checked = true;
+        choose(card, choice.preset);
+      }
+    }
+    const isShown = preset !== null && card.preset.name === preset;
+    const current = isShown || card.choices.some((choice) => choice.preset.name === preset);
     card.root.classList.toggle("current", current);
-    setText(card.apply, text(current ? "knee.applied" : "knee.apply"));
+    card.tag.hidden = !current;
+    setText(card.apply, text(isShown ? "knee.applied" : "knee.apply"));
   }
   updateDrawer();
 }

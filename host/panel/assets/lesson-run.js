@@ -6,7 +6,7 @@ import { controlReason } from "./control.js";
 import { confirmed } from "./dialogs.js";
 import { el, field, freshId, setText, tick } from "./dom.js";
 import { findingText, missed, setLines } from "./measures.js";
-import { disorderName, levelName, presetTitle } from "./names.js";
+import { answerOf, disorderName, levelName, presetTitle } from "./names.js";
 import { liveTime } from "./live.js";
 import { request } from "./report.js";
 import { number, text, textOr } from "./strings.js";
@@ -60,9 +60,6 @@ function fill(disorder, level, confidence) {
   view.level.value = level;
   for (const input of view.confidence) input.checked = Number(input.value) === confidence;
 }
-
-const answerOf = (lesson, student) =>
-  lesson.answers.findLast((one) => one.student === student && one.trial === lesson.trial);
 
 async function end() {
   const { lesson } = latest;

@@ -8,6 +8,7 @@ import { byId, el, setText, tick } from "./dom.js";
 import { latenessOf } from "./lateness.js";
 import { makeLeg } from "./leg.js";
 import { drawInside, startInside } from "./live-inside.js";
+import { feelPain } from "./pain.js";
 import { shadeName, shadesIn, shadesOf } from "./states.js";
 import { store, stored } from "./storage.js";
 import { number, onLanguage, text } from "./strings.js";
@@ -23,7 +24,7 @@ const LATE_MS = 40;
 const DRAW_AFTER_MS = 400;
 const CAREFUL_MS = 10_000;
 
-const stats = { frames: 0, bins: 0, paints: 0, missing: 0, first: null, latencies: [], draws: [] };
+const stats = { frames: 0, bins: 0, paints: 0, missing: 0, first: null, latencies: [], draws: [], ranges: [] };
 window.crepitusStats = stats;
 
 const bins = new RecentBins(32 * BINS_A_SECOND);
@@ -39,6 +40,7 @@ let wordsAt = 0;
 let binsAt = 0;
 let isStale = true;
 let shades = [];
+let kneeShown = null;
 
 function keep(list, value) {
   if (list.length >= KEPT) list.shift();
@@ -155,6 +157,7 @@ function paint(now) {
     // Since the navigation began.
     if (end > begin) stats.first ??= performance.now();
     keep(stats.draws, performance.now() - began);
+    stats.ranges = charts.panes.map(({ low, high }) => [low, high]);
     if (arrived) keep(stats.latencies, performance.timeOrigin + performance.now() - arrived);
   });
 }
@@ -238,6 +241,7 @@ export function startLive() {
     stats.frames++;
     stats.bins += count;
     if (count > 0) binsAt = performance.now();
+    feelPain(bins, count);
     stats.missing += missing;
     dirty = true;
   });
@@ -248,7 +252,16 @@ export function startLive() {
   });
   // After the listener that puts a frame into the bins.
   startInside(bins);
+  // Another knee may be a hundred times weaker: now the axes may change.
+  on("parameters", ({ hidden, revision }) => {
+    const knee = hidden ? "hidden" : revision;
+    if (knee !== kneeShown) charts.settle(liveTime());
+    kneeShown = knee;
+  });
   on("status", showCounters);
+  // Where others above them grow, the charts have less room.
+  const above = new ResizeObserver(() => charts.resize());
+  for (const part of [document.querySelector(".top"), byId("leg"), byId("target")]) above.observe(part);
   onLanguage(() => {
     charts.retitle();
     legend?.paint();

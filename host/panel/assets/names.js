@@ -26,25 +26,14 @@ export function disorderName(name) {
   return name ? textOr(`disorder.${name}`, heading ?? name) : text("disorder.other");
 }
 
-/** Whether any effect of the knee differs from its default. */
-function isHealthy(parameters) {
-  const byId = new Map(parameters.values);
-  const symptoms = new Set(
-    latest.hello.groups.filter((group) => group.kind === "symptom").map((group) => group.name),
-  );
-  return latest.hello.parameters
-    .filter(
-      (parameter) =>
-        parameter.key === "render" && (symptoms.has(parameter.group) || parameter.group === "crepitus"),
-    )
-    .every((parameter) => !byId.get(parameter.id));
-}
-
-/** The name of the knee that the device renders now. */
+/** The title of the knee that is on the device. */
 export function kneeName() {
   const parameters = latest.parameters;
   if (!parameters || !latest.hello) return "–";
   if (parameters.hidden) return text("hidden");
-  if (parameters.preset) return presetTitle(parameters.preset);
-  return isHealthy(parameters) ? text("knee.healthy") : text("knee.own");
+  return parameters.preset ? presetTitle(parameters.preset) : text("knee.own");
 }
+
+/** The answer of a student to the current knee of a lesson. */
+export const answerOf = (lesson, student) =>
+  lesson.answers.findLast((one) => one.student === student && one.trial === lesson.trial);

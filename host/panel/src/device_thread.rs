@@ -33,7 +33,7 @@ mod tests;
 mod torque_end;
 
 use crate::frame::{Header, Kind, Masks, frame};
-use crate::live::{Envelope, Pace};
+use crate::live::{Envelope, Marks, Pace, Pain};
 use crate::request::Request;
 use crate::shared::{Latest, Order, Outcome, Shared};
 use axum::extract::ws::Utf8Bytes;
@@ -118,7 +118,10 @@ pub(crate) struct DeviceThread<'p, T> {
     committed: Revision,
     /// The preset applied last, and the revision that it made.
     preset: Option<(String, Revision)>,
+    /// The user's own presets, as pages know them.
+    own: Vec<Preset>,
     envelope: Envelope,
+    pain: Pain,
     /// Hand on the leg of a simulated device.
     hand: Option<Hand>,
     heard: Heard,
@@ -177,7 +180,9 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             values,
             committed,
             preset: None,
+            own: Vec::new(),
             envelope: Envelope::new(ROWS_PER_BIN),
+            pain: Pain::of(&values),
             hand,
             heard: Heard::default(),
             now_s: 0.0,
@@ -275,7 +280,8 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             match self.client.pump(patience) {
                 Ok(Some(event)) => self.take(event),
                 Ok(None) => return,
-                Err(_) => {
+                Err(error) => {
+                    self.message = Some(error.to_string());
                     self.lost();
                     return;
                 }
@@ -325,7 +331,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         if let Ok(back) = self.client.reconnect(Duration::ZERO) {
             self.is_lost = false;
             self.in_force = None;
-            self.message = Some("connected again; torque is off".to_owned());
+            self.message = Some("connected again; the motor is off".to_owned());
             if let Some(resubscribed) = back.resubscribed {
                 self.resume_recording(resubscribed.begin);
             }
@@ -375,9 +381,12 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         if since < FRAME_EVERY {
             return;
         }
-        let (first, bins) = self.envelope.complete();
+        let (first, mut bins) = self.envelope.complete();
         if bins.is_empty() && since < BEAT_EVERY {
             return;
+        }
+        for bin in bins.iter_mut().filter(|bin| self.pain.is_felt(bin)) {
+            bin.marks.0 |= Marks::HURTS;
         }
         self.frame_at = Instant::now();
         self.frame_number = self.frame_number.wrapping_add(1);
@@ -467,7 +476,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
     fn arm(&mut self) -> Outcome {
         if self.shared.watchdog.has_expired() {
             return Err(
-                "the page does not answer quickly enough to be given torque: close other programs, or \
+                "the page does not answer quickly enough to turn the motor on: close other programs, or \
                  reload it"
                     .to_owned(),
             );

@@ -118,7 +118,7 @@ fn append(out: &mut Vec<u8>, bin: &Bin, masks: Masks) {
         out.extend(ends.into_iter().flat_map(f32::to_le_bytes));
     }
     let (states, breaks, marks) = if masks.states {
-        // Sticking and slipping would tell crepitus from the others.
+        // Sticking and slipping would tell crepitus from the others. A patient in pain says so, blind or not.
         (0, 0, bin.marks.without_phase())
     } else {
         (bin.states, bin.breaks, bin.marks)

@@ -13,14 +13,17 @@
 //! |---|---|
 //! | the lowest and highest value of a time | `envelope.rs` |
 //! | the names of the states in a bin | [`STATES`] |
+//! | where an empty end-feel hurts | `pain.rs` |
 //! | target speeds by name | `target.rs` |
 //! | how well a hand keeps to one | `pace.rs`; strokes are those of [`crepitus_knee::examination`] |
 
 mod envelope;
 mod pace;
+mod pain;
 mod target;
 
 pub use crepitus_model::render::effects::STATES;
 pub use envelope::{Bin, Bins, Envelope, Marks};
 pub use pace::{Pace, Score, Verdict};
+pub use pain::Pain;
 pub use target::{Aim, NAMED, Target, TargetError};

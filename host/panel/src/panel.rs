@@ -170,6 +170,7 @@ fn described(source: &Source) -> Value {
             "kind": "device",
             "name": name,
             "serial": serial,
+            "simulated": hand.is_some(),
             "hand": hand.as_ref().map(|_| hand::reach()),
         }),
         Source::Replay => json!({ "kind": "replay" }),

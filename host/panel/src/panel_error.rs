@@ -2,13 +2,21 @@
 
 use std::net::IpAddr;
 
+/// Command that lists the addresses of this computer.
+const LIST_ADDRESSES: &str = if cfg!(windows) {
+    "ipconfig"
+} else {
+    "ip address"
+};
+
 /// Errors of starting.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PanelError {
     /// This computer does not have the address.
     #[error(
-        "--lan {address}: this computer has no such address: `ip address` lists those that it has"
+        "--lan {address}: this computer has no such address: `{}` lists those that it has",
+        LIST_ADDRESSES
     )]
     Address {
         /// Address.

@@ -128,6 +128,8 @@ pub(crate) enum Request {
 /// A preset to save.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub(crate) struct SavePreset {
+    /// Name of the file; empty: made of the title.
+    #[serde(default)]
     pub(crate) name: String,
     #[serde(default)]
     pub(crate) title: String,

@@ -133,6 +133,16 @@ pub fn knee(values: &Values) -> Result<Preset, ValueError> {
     })
 }
 
+/// The first of these presets whose knee a device has: the same effects are on, with the same numbers.
+pub fn preset_of<'p>(
+    values: &Values,
+    presets: impl IntoIterator<Item = &'p Preset>,
+) -> Option<&'p Preset> {
+    let alone = |preset: &Preset| with_preset(&Values::default(), preset, false);
+    let own = alone(&knee(values).ok()?);
+    presets.into_iter().find(|preset| alone(preset) == own)
+}
+
 /// An effect's numbers and choices on a device.
 fn given(values: &Values, effect: &Effect) -> Given {
     let value = |key: &str| {
@@ -341,6 +351,32 @@ mod tests {
             }
         }
         assert!(taken > 200, "{taken}");
+    }
+
+    #[test]
+    fn a_knee_is_named_by_its_preset_whatever_else_the_device_has() {
+        let shipped = preset::shipped;
+        let alone = |preset: &Preset| with_preset(&Values::default(), preset, false);
+        let mut device = Values::default();
+        device.set(find("friction-compensation.share").unwrap().0, 0.7);
+        for preset in shipped() {
+            let mut values = with_preset(&device, preset, false);
+            if !preset.has("clonus") {
+                // Of an effect that is off.
+                values.set(find("clonus.beats").unwrap().0, 8.0);
+            }
+            let found = preset_of(&values, shipped()).unwrap();
+            // Another one may have the same numbers.
+            assert_eq!(alone(found), alone(preset), "{}", preset.name);
+        }
+        let name = |values: &Values| preset_of(values, shipped()).map(|p| p.name.as_str());
+        // A device as it is built.
+        assert_eq!(name(&device), Some("coarse"));
+        device.set(find("crepitus.static_torque_nm").unwrap().0, 0.45);
+        assert_eq!(name(&device), None);
+        device.set(find("crepitus.render").unwrap().0, 0.0);
+        assert_eq!(name(&device), None);
+        assert!(preset_of(&device, [&Preset::default()]).is_some());
     }
 
     #[test]

@@ -24,13 +24,14 @@ use std::path::{Path, PathBuf};
 Examples:
   crepitus panel                                # the device that is attached
   crepitus panel --device sim                   # without a device
+  crepitus panel --or-sim                       # simulated without a brace
   crepitus panel --sessions my-lessons          # lessons are stored there
   crepitus panel --replay monday.parquet --replay tuesday.parquet
   crepitus panel --lan 192.168.1.20 --no-open   # for others, with TLS
 
 The page is served to this computer alone, under a link with a secret; a second link is for looking on. \
-One page has control and may arm; every page may stop. If the controlling page is closed or does not \
-answer for 200 ms, torque is off.
+One page has control and may turn the motor on; every page may stop. If the controlling page is closed or \
+does not answer for 200 ms, the motor is off.
 
 To see it from another computer, `ssh -L 8080:localhost:8080` with `--port 8080` is safest; --lan serves \
 it to a network with a certificate that browsers warn about.")]
@@ -46,6 +47,10 @@ pub(crate) struct Arguments {
     /// Show recordings instead of a device; twice to compare two.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["device", "sessions"])]
     replay: Vec<PathBuf>,
+
+    /// Take a simulated knee if no device is attached, as a double-click does.
+    #[arg(long, conflicts_with_all = ["device", "replay"])]
+    or_sim: bool,
 
     /// Serve it to the network under this address of this computer, with TLS.
     #[arg(long, value_name = "ADDRESS")]
@@ -76,23 +81,40 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     interrupt::listen();
     if !arguments.replay.is_empty() {
         let panel = Panel::open(settings, &Source::Replay).map_err(Failure::input)?;
-        let _opened = announce(&panel, arguments, as_json)?;
+        let _opened = announce(&panel, arguments, "recordings, and no device", as_json)?;
         panel.replay(interrupt::requested);
         return Ok(());
     }
-    let mut client = Client::connect(open_examined(&arguments.device)?).map_err(failure)?;
-    if let Line::Simulated(_) = client.transport_mut() {
+    let line = open_examined(&device_of(arguments)?)?;
+    let mut client = Client::connect(line).map_err(failure)?;
+    let is_simulated = matches!(client.transport_mut(), Line::Simulated(_));
+    if is_simulated {
         // The leg is straight until the device is armed, but for one that nobody holds.
         client.zero().map_err(failure)?;
     }
+    let name = client.port();
+    let shown = match (is_simulated, arguments.or_sim) {
+        (true, true) => "a simulated knee: no brace is attached".to_owned(),
+        (true, false) => "a simulated knee".to_owned(),
+        (false, _) => format!("the brace at {name}"),
+    };
     let source = Source::Device {
-        name: client.port(),
+        name,
         serial: crepitus_client::connection::device_text::serial(&client.handshake().comms),
         hand: client.transport_mut().hand(),
     };
     let panel = Panel::open(settings, &source).map_err(Failure::input)?;
-    let _opened = announce(&panel, arguments, as_json)?;
+    let _opened = announce(&panel, arguments, &shown, as_json)?;
     panel.keep(client, &ThisProgram).map_err(failure)
+}
+
+/// The device that the arguments name: with `--or-sim` a simulated one, if none is attached.
+fn device_of(arguments: &Arguments) -> Result<DeviceArguments, Failure> {
+    let mut device = arguments.device.clone();
+    if arguments.or_sim && Line::attached().map_err(Failure::input)?.is_empty() {
+        device.device = Some("sim".to_owned());
+    }
+    Ok(device)
 }
 
 /// Checks that files can be stored in a folder; a lesson would find out too late.
@@ -105,10 +127,11 @@ fn probe(folder: &Path) -> Result<(), Failure> {
         })
 }
 
-/// Prints the links and opens the first.
+/// Prints what the page shows and its links, and opens the first.
 fn announce(
     panel: &Panel,
     arguments: &Arguments,
+    shown: &str,
     as_json: bool,
 ) -> Result<Option<browser::Opened>, Failure> {
     let Links {
@@ -117,11 +140,16 @@ fn announce(
         certificate,
     } = panel.links();
     if as_json {
-        print_json(&json!({ "teacher": teacher, "viewer": viewer, "certificate": certificate }))?;
+        print_json(&json!({
+            "shown": shown,
+            "teacher": teacher,
+            "viewer": viewer,
+            "certificate": certificate,
+        }))?;
     } else {
         print(&format!(
-            "{teacher}\n  this link controls: keep it to yourself\n{viewer}\n  this one is for looking on, \
-             and can stop\nCtrl-C disarms and ends the panel\n"
+            "{shown}\n{teacher}\n  this link controls: keep it to yourself\n{viewer}\n  this one is for \
+             looking on, and can stop\nCtrl-C turns the motor off and ends the panel\n"
         ))?;
         if let Some(certificate) = certificate {
             print(&format!(

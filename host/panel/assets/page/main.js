@@ -111,7 +111,9 @@ async function start() {
     setText(byId("speed"), number((columns.speedLow[last] + columns.speedHigh[last]) / 2));
     showSecret(byId("torque"), masked.torque, number(torque, 2));
     showSecret(byId("breaks"), masked.states, number(breaks));
-    setText(byId("pain"), hurts(values, columns.states[last], angle) ? text("page.pain") : "");
+    const pain = hurts(values, columns.states[last], angle) ? text("pain.hurts") : "";
+    byId("pain").hidden = pain === "";
+    setText(byId("pain"), pain);
     examination.show(knee.engine, masked.states);
   }
 

@@ -2,15 +2,21 @@
 
 use super::DeviceThread;
 use crate::hello;
+use crate::live::Pain;
 use crate::request::SavePreset;
 use crate::shared::Outcome;
 use crepitus_client::{Client, Transport};
+use crepitus_files::names;
 use crepitus_protocol::parameters::PARAMETERS;
 use crepitus_protocol::{DeviceSettings, Revision, Values};
 use crepitus_scene::preset::{self, Disorder, Preset};
 use crepitus_scene::scene::caps_warning;
-use crepitus_scene::values::{is_of_knee, knee, with_preset};
+use crepitus_scene::values::{is_of_knee, knee, preset_of, with_preset};
 use serde_json::{Value, json};
+use std::iter::once;
+
+/// Longest name that is made of a title; a number may follow it.
+const MOST_NAME: usize = 40;
 
 /// The knee without a disorder.
 pub(super) const HEALTHY: &str = "healthy";
@@ -113,10 +119,25 @@ impl<T: Transport> DeviceThread<'_, T> {
                 Some(found.ok_or_else(|| format!("there is no disorder {name:?}"))?)
             }
         };
-        self.program
-            .save_preset(&what.name, &preset, what.replace)?;
+        let name = match what.name.as_str() {
+            "" => self.file_name(&what.title),
+            name => name.to_owned(),
+        };
+        self.program.save_preset(&name, &preset, what.replace)?;
         self.publish_presets();
-        Ok(Value::Null)
+        self.publish_parameters();
+        Ok(json!({ "name": name }))
+    }
+
+    /// Name for the file of a preset with this title, which no preset has.
+    fn file_name(&self, title: &str) -> String {
+        let name = names::plain(title, MOST_NAME);
+        let name = if name.is_empty() { "knee" } else { &name };
+        let own = self.program.own_presets();
+        names::free(name, |name| {
+            let is_own = own.iter().any(|preset| preset.name == name);
+            is_own || name == HEALTHY || preset::find(name).is_some()
+        })
     }
 
     /// Reads the parameters that are committed.
@@ -124,6 +145,7 @@ impl<T: Transport> DeviceThread<'_, T> {
         if let Ok((revision, values)) = self.client.parameters() {
             let before = std::mem::replace(&mut self.values, values);
             self.committed = revision;
+            self.pain = Pain::of(&values);
             self.publish_parameters();
             self.examine(&before);
         }
@@ -137,7 +159,8 @@ impl<T: Transport> DeviceThread<'_, T> {
     }
 
     pub(super) fn publish_presets(&mut self) {
-        let presets = hello::presets(&self.program.own_presets());
+        self.own = self.program.own_presets();
+        let presets = hello::presets(&self.own);
         self.publish(|latest| &mut latest.presets, &json!({ "presets": presets }));
     }
 
@@ -150,18 +173,30 @@ impl<T: Transport> DeviceThread<'_, T> {
                 .iter()
                 .map(|(p, value)| json!([p.id, value]))
                 .collect();
-            let preset = self.preset.as_ref();
-            let preset = preset.filter(|(_, revision)| *revision == self.committed);
             json!({
                 "revision": self.committed.0,
                 "values": values,
-                "preset": preset.map(|(name, _)| name),
+                "preset": self.knee_name(),
             })
         };
         self.publish(
             |latest| &mut latest.parameters,
             &json!({ "parameters": message }),
         );
+    }
+
+    /// Name of the preset whose knee the device has: of the one applied last, or else of the first with these numbers.
+    fn knee_name(&self) -> Option<String> {
+        let applied = self.preset.as_ref();
+        if let Some((name, _)) = applied.filter(|(_, revision)| *revision == self.committed) {
+            return Some(name.clone());
+        }
+        let healthy = Preset {
+            name: HEALTHY.to_owned(),
+            ..Preset::default()
+        };
+        let all = once(&healthy).chain(preset::shipped()).chain(&self.own);
+        preset_of(&self.values, all).map(|preset| preset.name.clone())
     }
 
     fn check_open(&self) -> Result<(), String> {

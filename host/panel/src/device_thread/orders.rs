@@ -56,7 +56,7 @@ impl<T: Transport> DeviceThread<'_, T> {
         }
         if *request == Request::Arm && order.stops != self.shared.stops.load(Ordering::Relaxed) {
             return Err(
-                "STOP was pressed meanwhile: look at the device, then arm again".to_owned(),
+                "STOP was pressed meanwhile: look at the device, then turn the motor on again".to_owned(),
             );
         }
         let waited = order.queued_at.elapsed();
@@ -115,9 +115,9 @@ impl<T: Transport> DeviceThread<'_, T> {
             Holder::Page(_) => return,
         };
         let why = match cause {
-            Cause::TakeOver => "another page takes control: torque is off",
-            Cause::PageLeft => "the controlling page has gone: torque is off",
-            _ => "the controlling page has not answered for 200 ms: torque is off",
+            Cause::TakeOver => "another page takes control: the motor is off",
+            Cause::PageLeft => "the controlling page has gone: the motor is off",
+            _ => "the controlling page has not answered for 200 ms: the motor is off",
         };
         self.torque_ends(cause);
         self.message = Some(match self.client.disarm() {

@@ -3,6 +3,7 @@
 use super::DeviceThread;
 use crate::shared::Outcome;
 use crepitus_client::Transport;
+use crepitus_files::names::is_reserved;
 use crepitus_files::output::{folder_of, temporary_in};
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, Values};
@@ -75,6 +76,11 @@ impl<T: Transport> DeviceThread<'_, T> {
         if !(1..=MOST_NAME).contains(&count) || !name.chars().all(is_plain) {
             return Err(format!(
                 "invalid name {name:?}: expected 1 to {MOST_NAME} letters, digits, spaces, `-` and `_`"
+            ));
+        }
+        if is_reserved(name) {
+            return Err(format!(
+                "invalid name {name:?}: Windows has no file of this name"
             ));
         }
         let file = folder.join(name).with_extension(extension());
@@ -204,6 +210,8 @@ fn seal(file: PathBuf, id: String) -> JoinHandle<Result<(), String>> {
         if !is_recording(&file, &id) {
             return Err(failed(&"another file has this name now"));
         }
+        // Windows replaces no file that is open.
+        drop(recording);
         made.persist(&file).map_err(|e| failed(&e.error))?;
         Ok(())
     })

@@ -4,13 +4,14 @@ use super::recording::extension;
 use super::{DeviceThread, Program};
 use crate::control::{Holder, Page};
 use crate::frame::{HEADER, Kind, Masks};
-use crate::request::{LessonBegin, Request as FromPage};
+use crate::request::{LessonBegin, Request as FromPage, SavePreset};
 use crate::shared::{Outcome, Shared};
 use crate::tokens::{Role, Tokens};
 use axum::body::Bytes;
 use crepitus_client::connection::Simulated;
 use crepitus_client::{Client, Error, Transport, TransportError};
 use crepitus_protocol::host::{Operation, Request};
+use crepitus_protocol::parameters::id;
 use crepitus_protocol::{Decoder, Lane, Session, State};
 use crepitus_scene::preset::Preset;
 use crepitus_scene::{Overrides, shipped};
@@ -208,6 +209,49 @@ fn a_knee_that_asks_for_more_than_the_device_shows_is_told() {
         message.contains("the symptoms can ask for 5.1 N·m together"),
         "{message}"
     );
+}
+
+/// Nobody has applied the knee with which a device starts, and numbers may be set one by one.
+#[test]
+fn a_knee_is_named_by_its_numbers() {
+    let program = Alone::default();
+    let mut device_thread = device_thread(&program);
+    let named = |device_thread: &DeviceThread<'_, Flood>| {
+        let latest = device_thread.shared.latest.borrow();
+        let message: Value = serde_json::from_str(&latest.parameters).expect("JSON");
+        message["parameters"]["preset"].clone()
+    };
+    assert_eq!(named(&device_thread), "coarse");
+    for (id, value, expected) in [
+        (id::STATIC_TORQUE, 0.45, Value::Null),
+        (id::STATIC_TORQUE, 0.4, json!("coarse")),
+        (id::CREPITUS, 0.0, json!("healthy")),
+    ] {
+        device_thread.set(&[(id, value)]).expect("a revision");
+        assert_eq!(named(&device_thread), expected);
+    }
+}
+
+/// A teacher gives a title, and need not know what a file may be called.
+#[test]
+fn a_preset_is_saved_under_a_name_made_of_its_title() {
+    let program = Alone::default();
+    let mut device_thread = device_thread(&program);
+    for (title, name) in [
+        ("Steifes Knie für Übung 1", "steifes-knie-fuer-uebung-1"),
+        ("Coarse", "coarse-2"),
+        ("Healthy", "healthy-2"),
+        ("膝", "knee"),
+    ] {
+        let what = SavePreset {
+            title: title.to_owned(),
+            ..SavePreset::default()
+        };
+        assert_eq!(
+            device_thread.save_preset(&what),
+            Ok(json!({ "name": name }))
+        );
+    }
 }
 
 /// Returns whether pages see neither the parameters nor the curves; otherwise they see both.

@@ -18,6 +18,7 @@ use crate::lesson::finding::Finding;
 use crate::lesson::report::{Text, report};
 use crate::lesson::session::{Session, SessionError};
 use crepitus_files::input::{self, InputError};
+use crepitus_files::names::plain;
 use crepitus_files::output::{Claim, Hashed, OutputError, OwnedFolder, private_in};
 use crepitus_scene::preset::Level;
 use std::fs;
@@ -209,24 +210,13 @@ fn write_error(path: &Path) -> impl FnOnce(io::Error) -> FolderError {
     |cause| FolderError::Write { path, cause }
 }
 
-/// A name for a folder: small letters, digits and hyphens, at most 40, of any text.
+/// A name for a folder, of the name of a lesson.
 fn sanitised(name: &str) -> String {
-    let mut text = String::new();
-    for c in name.to_lowercase().chars() {
-        if text.len() >= 40 {
-            break;
-        }
-        if c.is_ascii_alphanumeric() {
-            text.push(c);
-        } else if !text.ends_with('-') && !text.is_empty() {
-            text.push('-');
-        }
-    }
-    let text = text.trim_end_matches('-');
-    if text.is_empty() {
+    let name = plain(name, 40);
+    if name.is_empty() {
         return "lesson".to_owned();
     }
-    text.to_owned()
+    name
 }
 
 /// Table of answers, by trial and student.

@@ -33,6 +33,8 @@ impl Marks {
     pub const LATE: u16 = 1 << 6;
     /// There is no sample: all extremes are empty.
     pub const GAP: u16 = 1 << 7;
+    /// The leg is beyond an empty end, which [`Pain`](crate::live::Pain) knows.
+    pub const HURTS: u16 = 1 << 8;
 
     /// Returns the marks without those of the imaginary object's motion.
     #[must_use]
