@@ -1,7 +1,7 @@
 //! Access: tokens of links, requests that are half open, names and pages of other sites.
 
 use crate::SIM;
-use crate::page::{Page, Panel};
+use crate::page::{Page, Panel, token};
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
@@ -16,7 +16,9 @@ fn is_refused(page: &mut Page) {
 #[test]
 fn only_a_link_opens_it() {
     let panel = Panel::new(&SIM);
-    for wrong in ["", "0123456789abcdef0123456789abcdef", &panel.teacher] {
+    let cut = &token(&panel.student)[1..];
+    let guess = "0123456789abcdef0123456789abcdef";
+    for wrong in ["", guess, &panel.teacher, &panel.student, cut] {
         is_refused(&mut Page::open(&panel.host, Some(wrong)));
     }
     // A page that says nothing is disconnected.

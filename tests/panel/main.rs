@@ -3,12 +3,15 @@
 #![cfg(target_os = "linux")]
 
 mod access;
+mod class;
 mod devices;
 mod hand;
 mod lessons;
 #[path = "../support/panel.rs"]
 mod page;
 mod recordings;
+mod remote;
+mod resumed;
 #[path = "../support/mod.rs"]
 mod support;
 #[path = "../support/tunnel.rs"]

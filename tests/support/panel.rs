@@ -19,6 +19,8 @@ pub(crate) struct Panel {
     pub(crate) child: Child,
     pub(crate) teacher: String,
     pub(crate) viewer: String,
+    pub(crate) student: String,
+    pub(crate) remote: String,
     /// Host and port.
     pub(crate) host: String,
     _home: tempfile::TempDir,
@@ -55,6 +57,8 @@ impl Panel {
         Self {
             child,
             viewer: link("viewer"),
+            student: link("student"),
+            remote: link("remote"),
             teacher,
             host,
             _home: home,
@@ -76,10 +80,35 @@ impl Panel {
         self.page(&self.viewer)
     }
 
+    /// The teacher's own phone, which has its first frame.
+    pub(crate) fn remote_page(&self) -> Page {
+        let mut page = Page::open(&self.host, Some(token(&self.remote)));
+        page.until("the first messages", |page| {
+            let has = |name: &str| page.latest.contains_key(name);
+            has("status") && has("holder") && has("knee") && page.newest().is_some()
+        });
+        page
+    }
+
+    /// A student's phone, which has not joined.
+    pub(crate) fn student_page(&self) -> Page {
+        let mut page = Page::open(&self.host, Some(token(&self.student)));
+        page.until("the greeting", |page| page.latest.contains_key("status"));
+        page
+    }
+
+    /// A student's phone that has joined, and its key.
+    pub(crate) fn joined(&self, name: &str, key: Option<&str>) -> (Page, String) {
+        let mut page = self.student_page();
+        let seat = page.ask("join", json!({ "name": name, "key": key }));
+        let key = seat.unwrap()["key"].as_str().unwrap().to_owned();
+        page.until("its seat", |page| page.message("own")["name"] == name);
+        (page, key)
+    }
+
     /// A page of a link that has received all that there is.
     fn page(&self, link: &str) -> Page {
-        let (_, token) = link.split_once('#').unwrap();
-        let mut page = Page::open(&self.host, Some(token));
+        let mut page = Page::open(&self.host, Some(token(link)));
         page.until("the first messages", |page| {
             let has = |name: &str| page.latest.contains_key(name);
             let is_replay = has("hello") && page.latest["hello"]["source"]["kind"] == "replay";
@@ -117,6 +146,11 @@ impl Panel {
         served::signal(&self.child, "-INT");
         self.child.wait().unwrap()
     }
+}
+
+/// The token of a link.
+pub(crate) fn token(link: &str) -> &str {
+    link.split_once('#').unwrap().1
 }
 
 impl Drop for Panel {
@@ -330,6 +364,11 @@ impl Page {
 
     pub(crate) fn send(&mut self, text: &str) {
         let _ = self.socket.send(Message::text(text));
+    }
+
+    /// The last message of a kind; null if none has come.
+    pub(crate) fn message(&self, kind: &str) -> &Value {
+        self.latest.get(kind).unwrap_or(&Value::Null)
     }
 
     pub(crate) fn status(&self, key: &str) -> &Value {

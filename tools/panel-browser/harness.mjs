@@ -1,7 +1,8 @@
 // Starts the panel, a simulated device and a browser; ends them all.
 
 import { spawn } from "node:child_process";
-import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
@@ -91,6 +92,24 @@ export async function quickest(limit, timed) {
   while (all.length < 5 && !(Math.min(...all) < limit)) all.push(await timed());
   console.log(`${all.map(Math.round)} ms of ${limit}`);
   return Math.min(...all);
+}
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+
+/** What axe-core finds on a page, what is too wide, and text below 14 px: in text, nothing where all is well. */
+export async function problemsOf(page) {
+  // Playwright's own evaluation is not bound by the page's policy.
+  await page.evaluate(AXE);
+  const { violations } = await page.evaluate(() => window.axe.run());
+  const found = violations.map(({ id, nodes }) => `${id}: ${nodes[0].html}`);
+  const [wide, small] = await page.evaluate(() => {
+    const sizes = [...document.querySelectorAll("body *")]
+      .filter((node) => node.checkVisibility() && [...node.childNodes].some((c) => c.nodeType === 3 && c.data.trim()))
+      .map((node) => [parseFloat(getComputedStyle(node).fontSize), node.outerHTML.slice(0, 80)]);
+    return [document.documentElement.scrollWidth - innerWidth, sizes.filter(([size]) => size < 14)];
+  });
+  if (wide > 0) found.push(`${wide} px too wide`);
+  return [...found, ...small.map(([size, html]) => `text of ${size} px: ${html}`)];
 }
 
 /** A page of its own context, with its errors in `page.problems`. */

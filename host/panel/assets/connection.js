@@ -12,6 +12,8 @@ const SILENT_AFTER_MS = 400;
 // A connection that hangs may never end by itself: after so long a new one is tried.
 const ABANDON_AFTER_MS = 4000;
 const LOOK_EVERY_MS = 50;
+// These links have a page of their own; the key stays with the tab.
+const PAGES = { student: "/student.html", remote: "/remote.html" };
 const listeners = new Map();
 const waiting = new Map();
 let socket = null;
@@ -79,7 +81,17 @@ function receiveFrame(data) {
   emit("frame", view);
 }
 
+/** Goes to the page of this link; returns whether it is another one. */
+function leavesFor(role) {
+  const isOther = Object.values(PAGES).includes(location.pathname);
+  const page = PAGES[role] ?? (isOther ? "/" : location.pathname);
+  if (page === location.pathname) return false;
+  location.replace(page + location.hash);
+  return true;
+}
+
 function receiveText(message) {
+  if (message.hello && leavesFor(message.hello.role)) return;
   if ("re" in message) {
     if ("error" in message) settle(message.re, "reject", new Error(message.error));
     else settle(message.re, "resolve", message.ok);
@@ -160,7 +172,7 @@ export function connect() {
   if (location.hash.length > 1) {
     // Where nothing can be stored, the address keeps it for a reload.
     const isStored = storeToken(location.hash.slice(1));
-    if (isStored) history.replaceState(null, "", location.pathname);
+    if (isStored) history.replaceState(null, "", location.pathname + location.search);
   }
   open();
   setInterval(lookForSilence, LOOK_EVERY_MS);

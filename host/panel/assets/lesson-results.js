@@ -3,9 +3,9 @@
 import { isTeacher } from "./connection.js";
 import { controlReason } from "./control.js";
 import { el } from "./dom.js";
-import { disorderName, levelName } from "./names.js";
+import { disorderName, lessonTitle, levelName } from "./names.js";
 import { request, say } from "./report.js";
-import { number, text, textOr } from "./strings.js";
+import { number, text } from "./strings.js";
 
 const LEVELS = ["mild", "moderate", "severe"];
 
@@ -21,7 +21,7 @@ const interval = (kappa) =>
 const confidence = (value) => (Number.isFinite(value) ? number(value, 1) : "–");
 
 function studentTable(summary) {
-  const columns = ["student", "right", "kappa", "level-kappa", "confidence-right", "confidence-wrong"];
+  const columns = ["student", "right", "kappa", "level-kappa", "confidence"];
   const row = (part, name) =>
     el(
       "tr",
@@ -30,8 +30,11 @@ function studentTable(summary) {
       el("td", { class: "count" }, text("results.of", { right: part.right, answers: part.answers })),
       el("td", null, interval(part.kappa)),
       el("td", null, interval(part.level_kappa)),
-      el("td", { class: "count" }, confidence(part.confidence_right)),
-      el("td", { class: "count" }, confidence(part.confidence_wrong)),
+      el(
+        "td",
+        { class: "count" },
+        [part.confidence_right, part.confidence_wrong].map(confidence).join(" / "),
+      ),
     );
   return el(
     "div",
@@ -71,7 +74,7 @@ function matrix(part, title) {
     { class: "scroll", tabindex: 0, role: "group", "aria-label": title },
     el(
       "table",
-      null,
+      { class: "confusion" },
       el("caption", null, title),
       el(
         "thead",
@@ -80,7 +83,7 @@ function matrix(part, title) {
           "tr",
           null,
           el("th", { scope: "col" }, text("results.corner")),
-          ...columns.map((name) => el("th", { scope: "col" }, nameOf(name))),
+          ...columns.map((name) => el("th", { scope: "col" }, el("span", null, nameOf(name)))),
         ),
       ),
       el(
@@ -128,6 +131,7 @@ export function showResults(host, lesson) {
     : [
         studentTable(summary),
         el("p", { class: "hint" }, text("results.kappa-hint")),
+        el("p", { class: "hint" }, summary.remarks.map((key) => text(`report.${key}`)).join(" ")),
         matrix(summary.all, text("results.matrix", { student: text("results.all") })),
         ...(summary.students.length > 1
           ? [
@@ -145,8 +149,8 @@ export function showResults(host, lesson) {
   host.replaceChildren(
     el(
       "section",
-      { class: "card" },
-      el("h2", null, text("results.title", { title: textOr(`lesson.${lesson.name}.title`, lesson.title) })),
+      { class: "card results" },
+      el("h2", null, text("results.title", { title: lessonTitle(lesson) })),
       summary &&
         el(
           "p",

@@ -1,12 +1,14 @@
 // A running lesson: instruction, time left, answers. What is hidden comes as
 // null from the server; the page has nothing to keep secret.
 
+import { makeAnswer, outcome } from "./answer-form.js";
+import { classCard } from "./class.js";
 import { latest } from "./connection.js";
 import { controlReason } from "./control.js";
 import { confirmed } from "./dialogs.js";
-import { el, field, freshId, setText, tick } from "./dom.js";
+import { el, field, freshId, setText } from "./dom.js";
 import { findingText, missed, setLines } from "./measures.js";
-import { answerOf, disorderName, levelName, presetTitle } from "./names.js";
+import { answerOf, kneeText, kneeTitle, lessonTitle } from "./names.js";
 import { liveTime } from "./live.js";
 import { request } from "./report.js";
 import { number, text, textOr } from "./strings.js";
@@ -15,50 +17,22 @@ let view = null;
 let trialShown = null;
 let timer = null;
 
-/** "spasticity, severe" */
-export function kneeText(disorder, level) {
-  const name = disorderName(disorder);
-  return level ? text("answer.knee", { disorder: name, level: levelName(level) }) : name;
-}
-
-const kneeTitle = ({ preset, disorder, level }) =>
-  disorder && disorder !== "healthy"
-    ? `${presetTitle(preset)} (${kneeText(disorder, level)})`
-    : presetTitle(preset);
-
-const outcome = (is) =>
-  is === null || is === undefined
-    ? null
-    : el("span", { class: `tag ${is ? "yes" : "no"}` }, text(is ? "answer.right" : "answer.wrong"));
-
 async function answer(event) {
   event.preventDefault();
-  const data = new FormData(view.form);
-  const confidence = Number(data.get("confidence"));
-  if (!data.get("disorder") || !confidence) {
-    setText(view.problem, text("answer.incomplete"));
-    return;
-  }
-  setText(view.problem, "");
-  const answered = data.get("student");
+  const given = view.parts.read();
+  setText(view.problem, given ? "" : text("answer.incomplete"));
+  if (!given) return;
+  const answered = view.student.value;
   const { lesson } = latest;
   const due = lesson.students.find((student) => student !== answered && !answerOf(lesson, student));
   // At once: the next student may type before the reply is here.
-  fill("", "", 0);
+  view.parts.fill(null);
   if (due) view.student.value = due;
   (due ? view.student : view.next).focus();
-  const given = { disorder: data.get("disorder"), level: data.get("level") || null, confidence };
   if (await request("lesson-answer", { student: answered, ...given })) return;
   // Nothing that was typed is lost.
   view.student.value = answered;
-  fill(given.disorder, given.level ?? "", confidence);
-}
-
-/** Fills the form of an answer. */
-function fill(disorder, level, confidence) {
-  view.disorder.value = disorder;
-  view.level.value = level;
-  for (const input of view.confidence) input.checked = Number(input.value) === confidence;
+  view.parts.fill(given);
 }
 
 async function end() {
@@ -71,49 +45,16 @@ async function end() {
 }
 
 function answerForm(lesson) {
-  view.student = el(
-    "select",
-    { name: "student" },
-    ...lesson.students.map((name) => el("option", { value: name }, name)),
-  );
-  view.disorder = el(
-    "select",
-    { name: "disorder" },
-    el("option", { value: "" }, text("answer.choose")),
-    ...lesson.choices.disorders.map((name) => el("option", { value: name }, disorderName(name))),
-  );
-  view.level = el(
-    "select",
-    { name: "level" },
-    el("option", { value: "" }, text("answer.no-level")),
-    ...lesson.choices.levels.map((name) => el("option", { value: name }, levelName(name))),
-  );
-  view.confidence = [1, 2, 3, 4, 5].map((value) => el("input", { type: "radio", name: "confidence", value }));
+  view.student = el("select", { name: "student" });
+  view.parts = makeAnswer(lesson.choices);
   view.send = el("button", { class: "primary" }, text("answer.send"));
   view.problem = el("p", { class: "problem", role: "alert" });
-  view.disorder.addEventListener("change", () => (view.level.disabled = view.disorder.value === "healthy"));
   view.form = el(
     "form",
     { id: "answer-form", class: "card", onsubmit: answer, novalidate: true },
     el("h3", null, text("answer.title")),
-    el(
-      "div",
-      { class: "row" },
-      field(text("answer.student"), view.student),
-      field(text("answer.disorder"), view.disorder),
-      field(text("answer.level"), view.level),
-    ),
-    el(
-      "fieldset",
-      { class: "choices" },
-      el("legend", null, text("answer.confidence")),
-      ...view.confidence.map((input) =>
-        tick(
-          input.value === "1" ? text("answer.low") : input.value === "5" ? text("answer.high") : input.value,
-          input,
-        ),
-      ),
-    ),
+    el("div", { class: "row" }, field(text("answer.student"), view.student), ...view.parts.fields),
+    view.parts.confidence,
     view.problem,
     el("div", { class: "row" }, view.send),
   );
@@ -159,7 +100,7 @@ export function showRun(host, lesson) {
   const about = [
     text(lesson.blind ? "setup.blind" : "setup.open"),
     lesson.blind && text(lesson.curves ? "run.curves" : "run.no-curves"),
-    lesson.blind && text("run.seed", { seed: lesson.seed }),
+    lesson.blind && lesson.seed !== null && text("run.seed", { seed: lesson.seed }),
     lesson.stored && text("run.stored", { folder: lesson.stored }),
   ];
   const title = freshId("lesson");
@@ -167,7 +108,7 @@ export function showRun(host, lesson) {
     el(
       "section",
       { class: "card", "aria-labelledby": title },
-      el("h2", { id: title }, textOr(`lesson.${lesson.name}.title`, lesson.title)),
+      el("h2", { id: title }, lessonTitle(lesson)),
       view.trial,
       view.progress,
       view.instruction,
@@ -181,6 +122,7 @@ export function showRun(host, lesson) {
     ),
     answerForm(lesson),
     view.answerCard,
+    classCard(),
     el("p", { class: "hint" }, about.filter(Boolean).join(" · ")),
   );
   clearInterval(timer);
@@ -200,9 +142,10 @@ function showTime() {
 
 /** Shows where the lesson is. */
 export function updateRun(lesson) {
-  const trial = `${lesson.trial} ${lesson.began}`;
+  const trial = `${lesson.trial} ${lesson.began} ${lesson.students}`;
   if (trial !== trialShown) {
     trialShown = trial;
+    view.student.replaceChildren(...lesson.students.map((name) => el("option", { value: name }, name)));
     view.student.value = lesson.students[0] ?? "";
   }
   const why = controlReason();

@@ -1,16 +1,20 @@
 // Setting up a lesson: one that ships, or a plan of one's own.
 
-import { latest } from "./connection.js";
+import { classCard } from "./class.js";
+import { isTeacher, latest } from "./connection.js";
 import { controlReason } from "./control.js";
 import { el, field, freshId, setText, tick } from "./dom.js";
-import { disorderName, presets, presetText } from "./names.js";
+import { disorderName, lessonTitle, presets, presetText } from "./names.js";
 import { request } from "./report.js";
 import { text, textOr } from "./strings.js";
+
+// A pseudonym to begin with, as long as nobody has joined by phone.
+const SUGGESTED = "A";
 
 // What was entered stays when the view is built again.
 const entered = {
   lesson: undefined,
-  students: "A",
+  students: SUGGESTED,
   seed: "",
   repeats: 1,
   title: "",
@@ -91,6 +95,9 @@ function planOf() {
   return { title: entered.title.trim() || text("plan.untitled"), blind, curves, feedback, knees };
 }
 
+/** The number of students who have joined by phone: the lesson has them besides those entered. */
+const joined = () => latest.class?.seats?.length ?? 0;
+
 const isBlind = () =>
   entered.lesson
     ? latest.hello.lessons.find((lesson) => lesson.name === entered.lesson)?.blind
@@ -106,7 +113,7 @@ async function begin() {
     ),
   ];
   const most = latest.hello.students_max;
-  if ((!students.length && isBlind()) || students.length > most) {
+  if ((!students.length && !joined() && isBlind()) || students.length > most) {
     return setText(view.problem, text("setup.bad-students", { most }));
   }
   const seed = String(entered.seed).trim();
@@ -140,8 +147,8 @@ function lessonChoices() {
   const shipped = latest.hello.lessons.map((lesson) => {
     const kind = text(lesson.blind ? "setup.blind" : "setup.open");
     const about = textOr(`lesson.${lesson.name}.description`, lesson.description);
-    const title = textOr(`lesson.${lesson.name}.title`, lesson.title);
-    return choice(lesson.name, title, `${about} ${text("setup.knees", { count: lesson.knees })}, ${kind}.`);
+    const knees = text("setup.knees", { count: lesson.knees });
+    return choice(lesson.name, lessonTitle(lesson), `${about} ${knees}, ${kind}.`);
   });
   return [...shipped, choice("", text("setup.own"), text("setup.own-about"))];
 }
@@ -188,12 +195,37 @@ function planForm() {
   );
 }
 
+function unfinishedItem(lesson) {
+  const { folder, started, trial, trials, students } = lesson;
+  const facts = text("setup.continue-facts", { started, trial, trials, students });
+  const resume = el("button", { type: "button", onclick: () => request("lesson-resume", { folder }) });
+  setText(resume, text("setup.continue"));
+  view.resume.push(resume);
+  return el("li", null, el("span", { class: "grow" }, lessonTitle(lesson), " · ", facts), resume);
+}
+
+/** Offers the lessons that were interrupted. */
+async function showUnfinished() {
+  const { unfinished } = view;
+  const found = latest.hello.stores && isTeacher() ? await request("lessons") : null;
+  // Meanwhile the view may have been built again.
+  if (unfinished !== view.unfinished) return;
+  const lessons = found?.lessons ?? [];
+  unfinished.hidden = !lessons.length;
+  view.resume = [];
+  const title = el("h3", { id: "unfinished-title" }, text("setup.unfinished"));
+  unfinished.replaceChildren(title, el("ul", { class: "seats" }, ...lessons.map(unfinishedItem)));
+  updateSetup();
+}
+
 /** Builds the setup. */
 export function showSetup(host) {
   const { lessons, stores } = latest.hello;
   if (entered.lesson === undefined) entered.lesson = lessons[0]?.name ?? null;
   view = {
     why: el("p", { class: "hint" }),
+    unfinished: el("section", { class: "card", "aria-labelledby": "unfinished-title", hidden: true }),
+    resume: [],
     problem: el("p", { class: "problem", role: "alert" }),
     begin: el(
       "button",
@@ -201,11 +233,12 @@ export function showSetup(host) {
       text("setup.begin"),
     ),
   };
-  const students = bound(el("textarea", { id: "students", rows: 3 }), "students");
-  students.value = entered.students;
+  view.students = bound(el("textarea", { id: "students", rows: 3 }), "students");
+  view.students.value = entered.students;
   view.plan = planForm();
   view.plan.hidden = entered.lesson !== null;
   host.replaceChildren(
+    view.unfinished,
     el(
       "section",
       { class: "card" },
@@ -217,7 +250,7 @@ export function showSetup(host) {
       "section",
       { class: "card", "aria-labelledby": "setup-students" },
       el("h3", { id: "setup-students" }, text("setup.who")),
-      field(text("setup.students"), students, text("setup.students-hint")),
+      field(text("setup.students"), view.students, text("setup.students-hint")),
       el(
         "div",
         { class: "row" },
@@ -240,13 +273,17 @@ export function showSetup(host) {
       el("div", { class: "row" }, view.begin),
       view.why,
     ),
+    classCard(),
   );
   updateSetup();
+  showUnfinished();
 }
 
 /** Shows whether a lesson can begin. */
 export function updateSetup() {
   const why = controlReason();
   view.begin.disabled = why !== "";
+  for (const button of view.resume) button.disabled = why !== "";
+  if (joined() && entered.students === SUGGESTED) view.students.value = entered.students = "";
   setText(view.why, why ? text("setup.disabled", { why }) : "");
 }

@@ -32,6 +32,7 @@ function render(force) {
 export function startLesson() {
   on("hello", () => render(true));
   on("presets", () => shown === "setup" && render(true));
+  on("class", () => shown === "setup" && render(false));
   on("lesson", () => render(false));
   on("examination", () => shown === "run" && updateMissed());
   on("status", () => {

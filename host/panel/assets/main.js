@@ -1,5 +1,6 @@
 // Starts the parts of the page, then connects.
 
+import { startClass } from "./class.js";
 import { connect, on } from "./connection.js";
 import { startControl } from "./control.js";
 import { byId } from "./dom.js";
@@ -13,6 +14,7 @@ import { startRecordings } from "./recordings.js";
 import { startStrings } from "./strings.js";
 import { setReplay, startTabs } from "./tabs.js";
 import { startTarget } from "./target.js";
+import { startWall } from "./wall.js";
 
 // What is scrolled to must not end up below the part of the header that stays in sight.
 const headers = [".top", ".bar"].map((part) => document.querySelector(part));
@@ -34,7 +36,9 @@ startTarget();
 startExamination();
 startNotes();
 startKnee();
+startClass();
 startLesson();
 startRecordings();
+startWall();
 on("hello", (hello) => setReplay(hello.source.kind === "replay"));
 connect();

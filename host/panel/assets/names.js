@@ -1,7 +1,7 @@
 // Names of knees and disorders as people read them, in the chosen language.
 
 import { latest } from "./connection.js";
-import { presetText } from "./labels.js";
+import { levelName, presetText } from "./labels.js";
 import { text, textOr } from "./strings.js";
 
 export { levelName, presetText } from "./labels.js";
@@ -24,6 +24,41 @@ export function disorderName(name) {
   if (name === "healthy") return text("knee.healthy");
   const heading = latest.hello?.disorders.find((disorder) => disorder.name === name)?.heading;
   return name ? textOr(`disorder.${name}`, heading ?? name) : text("disorder.other");
+}
+
+/** "spasticity, severe" */
+export function kneeText(disorder, level) {
+  const name = disorderName(disorder);
+  return level ? text("answer.knee", { disorder: name, level: levelName(level) }) : name;
+}
+
+/** The title of a knee that a message describes: on a phone there is no list of presets. */
+function knownTitle({ preset, title }) {
+  if (preset === "healthy" || presetOf(preset)) return presetTitle(preset);
+  return textOr(`preset.${preset}.title`, title);
+}
+
+/** "Spasticity, MAS 2 (spasticity, moderate)" */
+export const kneeTitle = (knee) =>
+  knee.disorder && knee.disorder !== "healthy"
+    ? `${knownTitle(knee)} (${kneeText(knee.disorder, knee.level)})`
+    : knownTitle(knee);
+
+/** The title of a lesson. */
+export const lessonTitle = ({ name, title }) => textOr(`lesson.${name}.title`, title);
+
+/** How many have answered the current trial of a lesson. */
+export function answeredText({ answers, trial, students }) {
+  const count = answers.filter((one) => one.trial === trial).length;
+  return text("wall.answered", { count, all: students.length });
+}
+
+/** The name of a recording: its knee, where that may be known, and its trial. */
+export function recordingTitle({ lesson, knee, title, name }) {
+  const own = title ?? name;
+  if (!lesson) return knee ? `${knownTitle(knee)} · ${own}` : own;
+  const shown = lesson.knee ? knownTitle(lesson.knee) : text("hidden");
+  return text("recordings.trial", { trial: lesson.trial, knee: shown, lesson: lessonTitle(lesson) });
 }
 
 /** The title of the knee that is on the device. */

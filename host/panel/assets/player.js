@@ -7,6 +7,7 @@ import { ask, latest } from "./connection.js";
 import { el, field, setText } from "./dom.js";
 import { makeLeg } from "./leg.js";
 import { makeLegend } from "./live.js";
+import { recordingTitle } from "./names.js";
 import { errorText, say } from "./report.js";
 import { shadesIn, shadesOf } from "./states.js";
 import { number, text } from "./strings.js";
@@ -277,10 +278,8 @@ export class Player {
 
   describe() {
     const { first, second } = this;
-    setText(
-      this.title,
-      second ? text("player.two", { first: first.title, second: second.title }) : first.title,
-    );
+    const titles = [first, second].map((one) => one && recordingTitle(one));
+    setText(this.title, second ? text("player.two", { first: titles[0], second: titles[1] }) : titles[0]);
     const facts = (one) =>
       text("player.about", {
         device: one.device ?? "–",
@@ -299,7 +298,7 @@ export class Player {
           line.style.borderTopColor = `var(${colour})`;
           return line;
         }),
-        el("span", null, text(dashed ? "player.dashed" : "player.solid", { name: one.title })),
+        el("span", null, text(dashed ? "player.dashed" : "player.solid", { name: recordingTitle(one) })),
       );
     this.names.hidden = !second;
     if (second) {
@@ -347,7 +346,7 @@ export class Player {
       el("th", { scope: "col" }, text(key)),
     );
     const titles = this.second
-      ? [this.first.title, this.second.title, text("player.same")].map((name) =>
+      ? [recordingTitle(this.first), recordingTitle(this.second), text("player.same")].map((name) =>
           el("th", { scope: "col" }, name),
         )
       : [];
@@ -368,16 +367,22 @@ export class Player {
       );
     };
     const title = text(this.second ? "player.parameters-two" : "player.parameters");
+    // The heading says which knees these are; the numbers behind that are for those who ask.
+    const open = this.parameters.firstChild?.open ?? false;
     return this.parameters.replaceChildren(
       el(
-        "div",
-        { class: "scroll", tabindex: 0, role: "group", "aria-label": title },
+        "details",
+        { open },
+        el("summary", null, title),
         el(
-          "table",
-          null,
-          el("caption", null, title),
-          el("thead", null, el("tr", null, ...head, ...titles)),
-          el("tbody", null, ...names.map(row)),
+          "div",
+          { class: "scroll", tabindex: 0, role: "group", "aria-label": title },
+          el(
+            "table",
+            null,
+            el("thead", null, el("tr", null, ...head, ...titles)),
+            el("tbody", null, ...names.map(row)),
+          ),
         ),
       ),
     );

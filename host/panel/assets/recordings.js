@@ -1,7 +1,9 @@
 // The Recordings tab: the list, and which recordings are open in the player.
 
+import { outcome } from "./answer-form.js";
 import { isReplay, isTeacher, on } from "./connection.js";
 import { byId, el, setText } from "./dom.js";
+import { kneeText, recordingTitle } from "./names.js";
 import { Player } from "./player.js";
 import { request } from "./report.js";
 import { number, onLanguage, text } from "./strings.js";
@@ -44,10 +46,19 @@ function close(file) {
   showList();
 }
 
+/** The answers to the trial of a recording. */
+const answersOf = ({ lesson }) =>
+  (lesson?.answers ?? []).map(({ student, disorder, level, right }) =>
+    el("li", null, `${student}: ${kneeText(disorder, level)} `, outcome(right)),
+  );
+
 function row(file) {
+  const title = recordingTitle(file);
+  const answers = answersOf(file);
   const isFirst = first?.id === file.id;
   const isSecond = second?.id === file.id;
   const facts = [
+    title === file.name ? null : file.name,
     Number.isFinite(file.seconds) ? text("recordings.seconds", { seconds: number(file.seconds, 1) }) : null,
     Number.isFinite(file.rows) ? text("recordings.rows", { rows: number(file.rows) }) : null,
     Number.isFinite(file.size) ? size(file.size) : null,
@@ -59,7 +70,7 @@ function row(file) {
       type: "button",
       class: "open",
       disabled: isFirst,
-      "aria-label": text("recordings.open-name", { name: file.name }),
+      "aria-label": text("recordings.open-name", { name: title }),
       onclick: () => open(file, false),
     },
     text("recordings.open"),
@@ -70,7 +81,7 @@ function row(file) {
       type: "button",
       class: "compare",
       disabled: !first || isFirst,
-      "aria-label": text(isSecond ? "recordings.apart-name" : "recordings.compare-name", { name: file.name }),
+      "aria-label": text(isSecond ? "recordings.apart-name" : "recordings.compare-name", { name: title }),
       onclick: () => (isSecond ? close(file) : open(file, true)),
     },
     text(isSecond ? "recordings.apart" : "recordings.compare"),
@@ -82,9 +93,10 @@ function row(file) {
     el(
       "div",
       null,
-      el("strong", null, file.name),
+      el("strong", null, title),
       " ",
       shown && el("span", { class: "tag" }, shown),
+      answers.length > 0 && el("ul", { class: "plain" }, ...answers),
       el("p", { class: "hint" }, facts.filter(Boolean).join(" · ")),
     ),
     el("div", { class: "row" }, openButton, compare),

@@ -3,16 +3,17 @@
 //! Of an open recording it keeps bins of each millisecond with samples, 56 bytes each. A trace of a longer
 //! time is joined from these; of a shorter one the samples themselves are read again.
 
+mod lessons;
 mod opened;
 
 use crate::frame::{Header, Kind, Masks, frame};
 use axum::body::Bytes;
 use crepitus_recording::{Damage, Recording};
+use lessons::Sessions;
 use opened::Opened;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::Receiver;
-use std::sync::{Arc, Mutex};
 use std::time::UNIX_EPOCH;
 use tokio::sync::oneshot;
 
@@ -32,6 +33,8 @@ pub(crate) struct Question {
 pub(crate) enum Asked {
     /// List of the recordings.
     List,
+    /// List of the lessons that can be continued.
+    Lessons,
     /// Facts of one.
     Open { recording: u32 },
     /// Bins of one; `id` is the request's.
@@ -58,23 +61,16 @@ pub(crate) struct Archive {
     sessions: Option<PathBuf>,
     /// Files that were listed; the place of one is its number.
     listed: Vec<PathBuf>,
-    /// A folder whose recordings must not be opened.
-    hidden: Arc<Mutex<Option<PathBuf>>>,
     /// The one used last is the last.
     open: Vec<(u32, Opened)>,
 }
 
 impl Archive {
-    pub(crate) fn new(
-        given: Vec<PathBuf>,
-        sessions: Option<PathBuf>,
-        hidden: Arc<Mutex<Option<PathBuf>>>,
-    ) -> Self {
+    pub(crate) fn new(given: Vec<PathBuf>, sessions: Option<PathBuf>) -> Self {
         Self {
             listed: given.clone(),
             given,
             sessions,
-            hidden,
             open: Vec::new(),
         }
     }
@@ -97,6 +93,9 @@ impl Archive {
                 let mut facts = self.opened(recording)?.facts();
                 facts["id"] = json!(recording);
                 facts["name"] = json!(self.listed.get(place(recording)).map(|p| self.name_of(p)));
+                if let Some(path) = self.listed.get(place(recording)) {
+                    facts["lesson"] = Sessions::default().trial(path);
+                }
                 Ok(ArchiveAnswer::Facts(facts))
             }
             Asked::Trace {
@@ -118,6 +117,10 @@ impl Archive {
                 };
                 Ok(ArchiveAnswer::Trace(frame(&header, &trace.bins)))
             }
+            Asked::Lessons => {
+                let lessons = lessons::unfinished(self.sessions.as_deref());
+                Ok(ArchiveAnswer::Facts(lessons))
+            }
         }
     }
 
@@ -133,10 +136,17 @@ impl Archive {
             .iter()
             .map(|path| (path.clone(), modified_s(path)));
         let files: Vec<_> = given.chain(found).take(MOST_LISTED).collect();
+        let mut sessions = Sessions::default();
         let list = files.iter().map(|(path, modified_s)| {
             let number = self.number_of(path);
             let size = std::fs::metadata(path).map_or(0, |m| m.len());
-            json!({ "id": number, "name": self.name_of(path), "size": size, "when": modified_s })
+            json!({
+                "id": number,
+                "name": self.name_of(path),
+                "size": size,
+                "when": modified_s,
+                "lesson": sessions.trial(path),
+            })
         });
         // Numbers stay what they are: pages have them.
         let list: Vec<_> = list.collect();
@@ -159,22 +169,19 @@ impl Archive {
     }
 
     fn opened(&mut self, number: u32) -> Result<&mut Opened, String> {
-        let hidden = self.hidden.lock().map(|hidden| hidden.clone());
-        let path = self.listed.get(place(number));
-        if let (Ok(Some(folder)), Some(path)) = (hidden, path)
-            && path.starts_with(folder)
-        {
-            return Err(
-                "this recording is of a blind lesson that is running: end the lesson first"
-                    .to_owned(),
-            );
-        }
         let found = self.open.iter().position(|(open, _)| *open == number);
         let opened = if let Some(place) = found {
             self.open.remove(place).1
         } else {
             let path = self.listed.get(place(number));
             let path = path.ok_or("there is no such recording: reload the list")?;
+            if lessons::is_hidden(path, self.sessions.as_deref()) {
+                return Err(
+                    "this recording is of a blind lesson that has not ended: continue the \
+                     lesson, and end it first"
+                        .to_owned(),
+                );
+            }
             let recording = Recording::open(path, Damage::Salvage).map_err(|e| e.to_string())?;
             Opened::new(recording)?
         };

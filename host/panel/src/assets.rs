@@ -25,9 +25,13 @@ macro_rules! assets {
 
 assets![
     HTML "index.html",
+    HTML "remote.html",
+    HTML "student.html",
     CSS "panel.css",
+    SCRIPT "answer-form.js",
     SCRIPT "bins.js",
     SCRIPT "charts.js",
+    SCRIPT "class.js",
     SCRIPT "connection.js",
     SCRIPT "control.js",
     SCRIPT "cutaway.js",
@@ -58,8 +62,10 @@ assets![
     SCRIPT "notes.js",
     SCRIPT "pain.js",
     SCRIPT "paint.js",
+    SCRIPT "phone.js",
     SCRIPT "player.js",
     SCRIPT "recordings.js",
+    SCRIPT "remote.js",
     SCRIPT "report.js",
     SCRIPT "save-knee.js",
     SCRIPT "slow.js",
@@ -70,8 +76,10 @@ assets![
     SCRIPT "stop.js",
     SCRIPT "storage.js",
     SCRIPT "strings.js",
+    SCRIPT "student.js",
     SCRIPT "tabs.js",
     SCRIPT "target.js",
+    SCRIPT "wall.js",
     CSS "vendor/uPlot.min.css",
     SCRIPT "vendor/uPlot.esm.js",
     JSON "strings/de.json",
@@ -82,6 +90,11 @@ assets![
 pub(crate) fn find(path: &str) -> Option<&'static Asset> {
     let path = if path == "/" { "/index.html" } else { path };
     ASSETS.iter().find(|asset| asset.path == path)
+}
+
+/// Returns whether a path is that of a page, to which a link can lead.
+pub(crate) fn is_page(path: &str) -> bool {
+    find(path).is_some_and(|asset| asset.kind == HTML)
 }
 
 #[cfg(test)]

@@ -9,7 +9,8 @@
 //! | whether an order is executed, control | `device_thread/orders.rs` |
 //! | who ended torque, and when | `device_thread/torque_end.rs` |
 //! | parameters and presets | `device_thread/knee.rs` |
-//! | lessons | `device_thread/lessons.rs` |
+//! | lessons | `device_thread/lessons.rs`, `device_thread/resumed.rs` |
+//! | students who answer by phone | `device_thread/students.rs` |
 //! | recordings | `device_thread/recording.rs` |
 //! | torques that pages play as sound | `device_thread/heard.rs` |
 //! | notes | `device_thread/notes.rs` |
@@ -26,12 +27,15 @@ mod lessons;
 mod notes;
 mod orders;
 mod recording;
+mod resumed;
 mod status;
+mod students;
 mod target;
 #[cfg(test)]
 mod tests;
 mod torque_end;
 
+use crate::class::Class;
 use crate::frame::{Header, Kind, Masks, frame};
 use crate::live::{Envelope, Marks, Pace, Pain};
 use crate::request::Request;
@@ -57,6 +61,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use tokio::sync::oneshot;
 use torque_end::Torque;
 
 /// Samples of a bin, 5 ms.
@@ -137,6 +142,9 @@ pub(crate) struct DeviceThread<'p, T> {
     /// Files that are being made.
     sealing: Vec<JoinHandle<Result<(), String>>>,
     lesson: Option<Held>,
+    class: Class,
+    /// Replies to answers that wait for the disk.
+    unstored: Vec<oneshot::Sender<Outcome>>,
     /// Pages do not see the parameters now.
     hides: bool,
     notes: Vec<Note>,
@@ -195,6 +203,8 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             recording: None,
             sealing: Vec::new(),
             lesson: None,
+            class: Class::default(),
+            unstored: Vec::new(),
             hides: false,
             notes: Vec::new(),
             message: None,
@@ -208,6 +218,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         device_thread.publish_presets();
         device_thread.publish_parameters();
         device_thread.publish_lesson();
+        device_thread.publish_class();
         device_thread.publish_target();
         device_thread.restart_examination();
         Ok(device_thread)
@@ -246,6 +257,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
     /// Orders, events, frames: some milliseconds.
     pub(crate) fn step(&mut self) {
         self.take_orders();
+        self.store_answers();
         self.supervise_page();
         if self.is_lost {
             self.try_to_reconnect();
@@ -448,13 +460,20 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             Request::LessonNext => self.next_trial(),
             Request::LessonEnd { language } => self.end_lesson(&language),
             Request::LessonClose => self.close_lesson(),
+            Request::LessonResume { folder } => self.resume_lesson(&folder),
+            Request::Severity { worse } => self.change_severity(worse),
+            Request::Class { open } => self.open_class(open),
+            Request::FreeSeat { student } => self.free_seat(&student),
             Request::Report { language } => self.report(&language),
             // Of the check of orders, the server and the archive.
             Request::Take
             | Request::Release
             | Request::Stop
             | Request::Disarm
+            | Request::Join { .. }
+            | Request::Answer { .. }
             | Request::Fault { .. }
+            | Request::Lessons
             | Request::Recordings
             | Request::Open { .. }
             | Request::Trace { .. } => Err("this is not for the device".to_owned()),

@@ -5,6 +5,7 @@
 //! WebSocket must come from our own page, and everything else is refused before it is
 //! looked at.
 
+use crate::assets;
 use axum::body::Body;
 use axum::extract::Request;
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
@@ -106,10 +107,10 @@ fn refusal(
     }
     let site = text("sec-fetch-site").unwrap_or("none");
     let is_foreign = !["same-origin", "none"].contains(&site);
-    // A link in an e-mail leads to the page, which shows nothing without its token.
+    // A link in an e-mail leads to a page, which shows nothing without its token.
     let is_link = text("sec-fetch-mode") == Some("navigate")
         && text("sec-fetch-dest").is_none_or(|dest| dest == "document");
-    if is_foreign && (!is_link || path != "/") {
+    if is_foreign && !(is_link && assets::is_page(path)) {
         return Some((
             StatusCode::FORBIDDEN,
             "a request of another site is refused",
@@ -160,8 +161,10 @@ mod tests {
         assert_eq!(site("/", "no-cors"), 403);
         assert_eq!(site("/main.js", "navigate"), 403);
         assert_eq!(site("/ws", "websocket"), 403);
-        // A link may lead to the page.
-        assert_eq!(site("/", "navigate"), 200);
+        // A link may lead to a page.
+        for page in ["/", "/student.html", "/remote.html"] {
+            assert_eq!(site(page, "navigate"), 200, "{page}");
+        }
         let framed = [
             ("sec-fetch-site", "cross-site"),
             ("sec-fetch-mode", "navigate"),

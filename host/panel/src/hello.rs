@@ -1,7 +1,10 @@
 //! First message to a page: the tables that it shows, each from its one source.
 
+use crate::control::Page;
+use crate::invitations::Invitations;
 use crate::lesson::plans;
 use crate::live::{NAMED, STATES};
+use crate::tokens::Role;
 use crepitus_knee::examination::Measure;
 use crepitus_model::render::effects::{IS_SYMPTOM, SPECS};
 use crepitus_protocol::coil::COIL_FAULTS;
@@ -13,7 +16,30 @@ use crepitus_scene::values::{is_effect, is_of_knee, with_preset};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// The tables. A page's number and role are added for each.
+/// Tables that a student's phone needs, to name what it shows.
+const OF_STUDENTS: [&str; 2] = ["version", "disorders"];
+
+/// First message to a page: the tables of its role, its number, and for a teacher the links to hand on.
+pub(crate) fn greeting(tables: &Value, links: &Invitations, role: Role, page: Page) -> Value {
+    let mut hello = if role == Role::Student {
+        let own = OF_STUDENTS.map(|key| (key.to_owned(), tables[key].clone()));
+        Value::Object(own.into_iter().collect())
+    } else {
+        tables.clone()
+    };
+    hello["page"] = json!(page);
+    hello["role"] = json!(role.name());
+    if role == Role::Teacher {
+        hello["links"] = json!({
+            "student": links.student,
+            "remote": links.remote,
+            "projector": links.projector,
+        });
+    }
+    hello
+}
+
+/// The tables. [`greeting`] adds what is of a page.
 pub(crate) fn tables(source: &Value, sessions: Option<&Path>) -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"),
@@ -196,6 +222,25 @@ mod tests {
             tables["lessons"].as_array().unwrap().len(),
             plans::FILES.len()
         );
+    }
+
+    /// A link gives its holder rights: only a teacher has those of others.
+    #[test]
+    fn a_greeting_has_what_the_role_may_know() {
+        let tables = tables(&json!({ "kind": "device", "serial": "1" }), None);
+        let links = Invitations::new("of-student", "of-remote", "of-wall", false);
+        for role in Role::ALL {
+            let hello = greeting(&tables, &links, role, 7);
+            assert!(hello["role"] == role.name() && hello["page"] == 7);
+            assert_eq!(hello["links"].is_object(), role == Role::Teacher);
+            assert_eq!(hello["source"].is_object(), role != Role::Student);
+            let has_link = hello.to_string().contains("\"of-");
+            assert_eq!(has_link, role == Role::Teacher);
+        }
+        let hello = greeting(&tables, &links, Role::Student, 7);
+        assert_eq!(hello.as_object().unwrap().len(), OF_STUDENTS.len() + 2);
+        // Without a network there is no code for a phone.
+        assert!(links.student["qr"].is_null());
     }
 
     #[test]

@@ -20,7 +20,7 @@
 //! | the form of a lesson's file, the shipped lessons | [`Plan`], [`plans`] |
 //! | the order of the trials, from a seed | [`order`] |
 //! | what may be called when; what is revealed when | [`Lesson`], [`LessonError`] |
-//! | what the page shows | [`View`] |
+//! | what a page shows, and a student's phone | [`View`], [`OwnView`] |
 //! | Cohen's kappa and its interval | [`statistics`] |
 //! | files of a session | [`SessionFolder`], [`Session`] |
 //! | the page to print, and its texts | [`report`] |
@@ -29,6 +29,7 @@ mod finding;
 mod folder;
 mod lesson;
 pub mod order;
+mod own;
 mod plan;
 pub mod plans;
 pub mod report;
@@ -38,10 +39,13 @@ mod summary;
 mod view;
 
 pub use finding::{Finding, Knee};
+pub(crate) use folder::trial_of;
 pub use folder::{FolderError, SessionFolder};
+pub(crate) use lesson::{check_pseudonym, is_same_name};
 pub use lesson::{
     Answer, BeginError, By, LEAST_TORQUE_SHARE, Lesson, LessonError, MOST_SEED, Note,
 };
+pub use own::{OwnAnswer, OwnView};
 pub use plan::{
     CheckedPlan, Feedback, Known, MOST_STUDENTS, MOST_TRIALS, Plan, PlanError, PlannedKnee,
 };

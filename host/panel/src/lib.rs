@@ -15,6 +15,7 @@
 //! | to find | look in |
 //! |---|---|
 //! | what is served, and to whom | `server.rs`, `guard.rs`, `pending.rs`, `tokens.rs`, `tickets.rs` |
+//! | links for phones and a wall, students who join | `invitations.rs`, `qr.rs`, `class.rs` |
 //! | the connection of a page | `socket.rs`, `request.rs`, `control.rs` |
 //! | what is done with the device | `device_thread.rs` |
 //! | requests of a page's hand on a simulated leg | `hand.rs` |
@@ -32,18 +33,22 @@
 mod archive;
 mod assets;
 mod book;
+mod class;
 mod control;
 mod device_thread;
 mod frame;
 mod guard;
 mod hand;
 mod hello;
+mod invitations;
 pub mod lesson;
 pub mod live;
 mod page;
 mod panel;
 mod panel_error;
 mod pending;
+#[cfg(feature = "lan")]
+mod qr;
 mod replay;
 mod request;
 mod server;

@@ -5,6 +5,7 @@ use crate::device_thread::{DeviceThread, Program};
 use crate::guard::Names;
 use crate::hand;
 use crate::hello;
+use crate::invitations::Invitations;
 use crate::panel_error::PanelError;
 use crate::pending::Pending;
 use crate::server;
@@ -56,6 +57,12 @@ pub struct Links {
     pub teacher: String,
     /// Link whose holder may look on, and stop.
     pub viewer: String,
+    /// Link whose holders may answer, each as a student, and stop.
+    pub student: String,
+    /// Link whose holder may run a lesson while another page controls.
+    pub remote: String,
+    /// QR code of the students' link as text, where phones can reach it: light modules are full blocks.
+    pub student_code: Option<String>,
     /// SHA-256 of the certificate, if there is one.
     pub certificate: Option<String>,
 }
@@ -109,15 +116,29 @@ impl Panel {
         let (orders, inbox) = channel();
         let (questions, asked) = channel();
         let tables = hello::tables(&described(source), settings.sessions.as_deref());
-        let shared = Arc::new(Shared::new(tokens.clone(), tables, orders, questions));
-        let sessions = settings.sessions.clone();
-        let archive = Archive::new(settings.recordings, sessions, shared.hidden.clone());
+        let link = |page: &str, token: &str| format!("{scheme}://{first}/{page}#{token}");
+        let student = link("student.html", &tokens.student);
+        let remote = link("remote.html", &tokens.remote);
+        let projector = link("?projector", &tokens.viewer);
+        let is_lan = settings.lan.is_some();
+        let invitations = Invitations::new(&student, &remote, &projector, is_lan);
+        let mut links = Links {
+            teacher: link("", &tokens.teacher),
+            viewer: link("", &tokens.viewer),
+            student_code: code(&student).filter(|_| is_lan),
+            student,
+            remote,
+            certificate: None,
+        };
+        let shared = Shared::new(tokens, tables, invitations, orders, questions);
+        let shared = Arc::new(shared);
+        let archive = Archive::new(settings.recordings, settings.sessions.clone());
         let named = |name: &str| thread::Builder::new().name(name.to_owned());
         named("archive")
             .spawn(move || archive.run(&asked))
             .map_err(|e| system(&e))?;
         let router = server::router(shared.clone(), Names { scheme, hosts });
-        let certificate = spawn(listener, router, shared.pending.clone(), settings.lan)?;
+        links.certificate = spawn(listener, router, shared.pending.clone(), settings.lan)?;
         Ok(Self {
             shared,
             inbox,
@@ -126,11 +147,7 @@ impl Panel {
                 Source::Device { hand, .. } => hand.clone(),
                 Source::Replay => None,
             },
-            links: Links {
-                teacher: format!("{scheme}://{first}/#{}", tokens.teacher),
-                viewer: format!("{scheme}://{first}/#{}", tokens.viewer),
-                certificate,
-            },
+            links,
         })
     }
 
@@ -162,6 +179,18 @@ impl Panel {
     pub fn replay(self, has_ended: impl Fn() -> bool) {
         crate::replay::run(&self.shared, &self.inbox, has_ended);
     }
+}
+
+/// QR code of a link, as text.
+#[cfg(feature = "lan")]
+fn code(link: &str) -> Option<String> {
+    crate::qr::text(link)
+}
+
+/// Without TLS no phone reaches it.
+#[cfg(not(feature = "lan"))]
+fn code(_: &str) -> Option<String> {
+    None
 }
 
 fn described(source: &Source) -> Value {

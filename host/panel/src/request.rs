@@ -1,5 +1,6 @@
 //! Messages of a page: requests, and the right that each needs; answers to frames; its hand.
 
+use crate::tokens::Role;
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -105,6 +106,30 @@ pub(crate) enum Request {
     },
     /// Put it away.
     LessonClose,
+    /// The lessons that were interrupted.
+    Lessons,
+    /// Continue the one in this folder.
+    LessonResume { folder: String },
+    /// A milder or a worse knee of the same disorder.
+    Severity { worse: bool },
+    /// Let students join by phone, or no more.
+    Class { open: bool },
+    /// Take a student's seat from its phone.
+    FreeSeat { student: String },
+    /// Join the class; with the key of an earlier time under the name of that time.
+    Join {
+        name: String,
+        #[serde(default)]
+        key: Option<String>,
+    },
+    /// The answer of the student who has joined on this page, to this trial.
+    Answer {
+        trial: usize,
+        disorder: String,
+        #[serde(default)]
+        level: Option<String>,
+        confidence: u8,
+    },
     /// Report of the lesson, in this language.
     Report {
         #[serde(default)]
@@ -180,10 +205,31 @@ pub(crate) struct LessonBegin {
 pub(crate) enum Right {
     /// Every page.
     Anybody,
+    /// Every page but a student's.
+    Look,
+    /// A page with the students' link.
+    Student,
+    /// A page with the teacher's link, or the remote's.
+    Note,
+    /// The page that has control; the remote, while a page has it.
+    Run,
     /// A page with the teacher's link.
     Teacher,
     /// The page that has control.
     Control,
+}
+
+impl Right {
+    /// Returns whether a link of this role can have it. Control is checked when a request is executed.
+    pub(crate) fn is_of(self, role: Role) -> bool {
+        match self {
+            Self::Anybody => true,
+            Self::Look => role != Role::Student,
+            Self::Student => role == Role::Student,
+            Self::Note | Self::Run => matches!(role, Role::Teacher | Role::Remote),
+            Self::Teacher | Self::Control => role == Role::Teacher,
+        }
+    }
 }
 
 impl Request {
@@ -200,7 +246,9 @@ impl Request {
                 | Self::Apply { .. }
                 | Self::Set { .. }
                 | Self::Reset
+                | Self::Severity { .. }
                 | Self::LessonStart
+                | Self::LessonResume { .. }
         )
     }
 
@@ -217,7 +265,9 @@ impl Request {
                 | Self::Apply { .. }
                 | Self::Set { .. }
                 | Self::Reset
+                | Self::Severity { .. }
                 | Self::LessonBegin(_)
+                | Self::LessonResume { .. }
                 | Self::LessonStart
                 | Self::LessonNext
         )
@@ -226,11 +276,17 @@ impl Request {
     /// Pages that may make it.
     pub(crate) fn right(&self) -> Right {
         match self {
-            Self::Stop | Self::Fault { .. } => Right::Anybody,
+            Self::Stop => Right::Anybody,
+            Self::Fault { .. } => Right::Look,
+            Self::Join { .. } | Self::Answer { .. } => Right::Student,
+            Self::Note { .. } => Right::Note,
+            Self::LessonStart | Self::LessonNext | Self::Severity { .. } => Right::Run,
             Self::Take
             | Self::Release
-            | Self::Note { .. }
             | Self::Report { .. }
+            | Self::Class { .. }
+            | Self::FreeSeat { .. }
+            | Self::Lessons
             | Self::Recordings
             | Self::Open { .. }
             | Self::Trace { .. } => Right::Teacher,
@@ -329,6 +385,73 @@ mod tests {
         for request in [Request::Stop, Request::Disarm, Request::Release] {
             assert!(!request.expires(), "{request:?}");
         }
+    }
+
+    /// Everything that a page can ask for.
+    const ALL: &[&str] = &[
+        r#"{"do":"stop"}"#,
+        r#"{"do":"take"}"#,
+        r#"{"do":"release"}"#,
+        r#"{"do":"zero"}"#,
+        r#"{"do":"arm"}"#,
+        r#"{"do":"disarm"}"#,
+        r#"{"do":"clear-fault"}"#,
+        r#"{"do":"apply","preset":"a"}"#,
+        r#"{"do":"set","changes":[]}"#,
+        r#"{"do":"reset"}"#,
+        r#"{"do":"save"}"#,
+        r#"{"do":"save-preset","name":"a"}"#,
+        r#"{"do":"target","target":null}"#,
+        r#"{"do":"score","running":true}"#,
+        r#"{"do":"examine"}"#,
+        r#"{"do":"note","text":"a"}"#,
+        r#"{"do":"record","running":true}"#,
+        r#"{"do":"lesson-begin","students":[]}"#,
+        r#"{"do":"lesson-start"}"#,
+        r#"{"do":"lesson-answer","student":"A","disorder":"clonus","confidence":1}"#,
+        r#"{"do":"lesson-next"}"#,
+        r#"{"do":"lesson-end"}"#,
+        r#"{"do":"lesson-close"}"#,
+        r#"{"do":"lessons"}"#,
+        r#"{"do":"lesson-resume","folder":"a"}"#,
+        r#"{"do":"severity","worse":true}"#,
+        r#"{"do":"class","open":true}"#,
+        r#"{"do":"free-seat","student":"A"}"#,
+        r#"{"do":"join","name":"A"}"#,
+        r#"{"do":"answer","trial":1,"disorder":"clonus","confidence":1}"#,
+        r#"{"do":"report"}"#,
+        r#"{"do":"fault","code":1}"#,
+        r#"{"do":"recordings"}"#,
+        r#"{"do":"open","recording":0}"#,
+        r#"{"do":"trace","recording":0,"from_s":0,"to_s":1,"points":1}"#,
+    ];
+
+    /// What a role can ask for at all, whoever has control.
+    #[test]
+    fn each_role_has_the_least_rights() {
+        let may = |role: Role| -> Vec<&str> {
+            let requests = ALL.iter().map(|text| {
+                let request = request(&text.replacen('{', r#"{"id":1,"#, 1));
+                (request.expect(text).right(), text)
+            });
+            requests
+                .filter(|(right, _)| right.is_of(role))
+                .map(|(_, text)| text.split('"').nth(3).unwrap())
+                .collect()
+        };
+        assert_eq!(may(Role::Student), ["stop", "join", "answer"]);
+        assert_eq!(may(Role::Viewer), ["stop", "fault"]);
+        let remote = [
+            "stop",
+            "note",
+            "lesson-start",
+            "lesson-next",
+            "severity",
+            "fault",
+        ];
+        assert_eq!(may(Role::Remote), remote);
+        // A teacher has every right but that of a student, who answers for one person alone.
+        assert_eq!(may(Role::Teacher).len(), ALL.len() - 2);
     }
 
     #[test]

@@ -10,6 +10,7 @@
 use crate::archive::Question;
 use crate::control::{Control, Page};
 use crate::hand::HandRequests;
+use crate::invitations::Invitations;
 use crate::pending::Pending;
 use crate::request::Request;
 use crate::tickets::Tickets;
@@ -18,9 +19,9 @@ use crate::watchdog::PageWatchdog;
 use axum::body::Bytes;
 use axum::extract::ws::Utf8Bytes;
 use serde_json::Value;
-use std::path::PathBuf;
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, mpsc};
+use std::sync::mpsc;
 use std::time::Instant;
 use tokio::sync::{broadcast, oneshot, watch};
 
@@ -52,21 +53,59 @@ pub(crate) struct Latest {
     pub(crate) target: Utf8Bytes,
     pub(crate) examination: Utf8Bytes,
     pub(crate) lesson: Utf8Bytes,
+    /// Students who have joined.
+    pub(crate) class: Utf8Bytes,
+    /// Part of the status for students.
+    pub(crate) state: Utf8Bytes,
+    /// Public part of the lesson.
+    pub(crate) public_lesson: Utf8Bytes,
+    /// Public part of the class.
+    pub(crate) public_class: Utf8Bytes,
+    /// The knee, also while it is hidden.
+    pub(crate) knee: Utf8Bytes,
+    /// A student's part of the lesson, for each page that has joined.
+    pub(crate) own: HashMap<Page, Utf8Bytes>,
     /// All so far.
     pub(crate) notes: Vec<Utf8Bytes>,
 }
 
 impl Latest {
-    /// All but the notes.
-    pub(crate) fn messages(&self) -> [&Utf8Bytes; 6] {
-        [
-            &self.status,
-            &self.parameters,
-            &self.presets,
-            &self.target,
-            &self.examination,
-            &self.lesson,
-        ]
+    /// Messages for a page of this role, but the notes: always as many, empty where there is none.
+    pub(crate) fn messages(&self, role: Role, page: Page) -> Vec<Utf8Bytes> {
+        let messages = match role {
+            Role::Teacher => vec![
+                &self.status,
+                &self.parameters,
+                &self.presets,
+                &self.target,
+                &self.examination,
+                &self.lesson,
+                &self.class,
+            ],
+            Role::Viewer => vec![
+                &self.status,
+                &self.parameters,
+                &self.presets,
+                &self.target,
+                &self.examination,
+                &self.public_lesson,
+                &self.public_class,
+            ],
+            Role::Remote => vec![&self.status, &self.lesson, &self.knee],
+            Role::Student => {
+                let own = self.own.get(&page).cloned();
+                return vec![self.state.clone(), own.unwrap_or_default()];
+            }
+        };
+        messages.into_iter().cloned().collect()
+    }
+
+    /// Notes on the time line, for a page of this role.
+    pub(crate) fn notes(&self, role: Role) -> &[Utf8Bytes] {
+        match role {
+            Role::Teacher | Role::Viewer => &self.notes,
+            Role::Remote | Role::Student => &[],
+        }
     }
 }
 
@@ -86,10 +125,10 @@ pub(crate) struct Shared {
     pub(crate) tickets: Tickets,
     /// Connections without a token.
     pub(crate) pending: Pending,
-    /// Content of the first message to a page.
+    /// Tables of the first message to a page.
     pub(crate) hello: Value,
-    /// A folder whose recordings must not be opened: of a blind lesson.
-    pub(crate) hidden: Arc<Mutex<Option<PathBuf>>>,
+    /// Links that a teacher's page hands on.
+    pub(crate) invitations: Invitations,
     pub(crate) orders: mpsc::Sender<Order>,
     pub(crate) questions: mpsc::Sender<Question>,
 }
@@ -98,6 +137,7 @@ impl Shared {
     pub(crate) fn new(
         tokens: Tokens,
         hello: Value,
+        invitations: Invitations,
         orders: mpsc::Sender<Order>,
         questions: mpsc::Sender<Question>,
     ) -> Self {
@@ -113,7 +153,7 @@ impl Shared {
             tickets: Tickets::default(),
             pending: Pending::default(),
             hello,
-            hidden: Arc::default(),
+            invitations,
             orders,
             questions,
         }

@@ -7,6 +7,7 @@ use crate::archive::{ArchiveAnswer, Asked, Question};
 use crate::book;
 use crate::control::{Holder, Page};
 use crate::hand::HandRequest;
+use crate::hello;
 use crate::request::{Message as FromPage, Request, Right};
 use crate::shared::{Latest, Outcome, Shared, gone};
 use crate::tokens::Role;
@@ -22,7 +23,7 @@ use std::time::Duration;
 use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 use tokio::task::JoinSet;
-use tokio::time::{sleep, timeout};
+use tokio::time::{Instant, sleep_until, timeout};
 
 /// Longest time until a page has said its token.
 const TOKEN_TIMEOUT: Duration = Duration::from_secs(2);
@@ -62,9 +63,7 @@ pub(crate) async fn talk(socket: WebSocket, peer: SocketAddr, shared: Arc<Shared
     };
     shared.pending.admit(peer);
     let page = shared.control.page();
-    let mut hello = shared.hello.clone();
-    hello["page"] = json!(page);
-    hello["role"] = json!(role.name());
+    let hello = hello::greeting(&shared.hello, &shared.invitations, role, page);
     if send(&mut sink, text(&json!({ "hello": hello })))
         .await
         .is_err()
@@ -74,7 +73,7 @@ pub(crate) async fn talk(socket: WebSocket, peer: SocketAddr, shared: Arc<Shared
     let (replies, waiting) = mpsc::channel(REPLIES);
     let (listens, listening) = watch::channel(false);
     let reader = read(stream, page, role, &shared, (replies, listens));
-    let writer = write(sink, page, &shared, (waiting, listening));
+    let writer = write(sink, (page, role), &shared, (waiting, listening));
     tokio::select! {
         () = reader => {}
         () = writer => {}
@@ -92,10 +91,13 @@ async fn role(stream: &mut SplitStream<WebSocket>, shared: &Shared) -> Option<Ro
 
 async fn write(
     mut sink: Sink,
-    page: Page,
+    (page, role): (Page, Role),
     shared: &Shared,
     (mut replies, mut listening): (mpsc::Receiver<Message>, watch::Receiver<bool>),
 ) {
+    // A student's phone shows no curves, and cannot take control.
+    let looks = role != Role::Student;
+    let mut beat_at = Instant::now() + BEAT_EVERY;
     let mut samples = None;
     let mut frames = shared.frames.subscribe();
     let mut latest = shared.latest.subscribe();
@@ -111,7 +113,7 @@ async fn write(
                 Some(reply) => vec![reply],
                 None => return,
             },
-            changed = control.changed() => {
+            changed = control.changed(), if looks => {
                 if changed.is_err() {
                     return;
                 }
@@ -126,11 +128,11 @@ async fn write(
                     return;
                 }
                 let now = latest.borrow_and_update().clone();
-                let messages = news(&sent, &now);
+                let messages = news(&sent, &now, role, page);
                 sent = now;
                 messages
             }
-            frame = frames.recv() => match frame {
+            frame = frames.recv(), if looks => match frame {
                 Ok(frame) => vec![Message::Binary(frame)],
                 // A slow page loses frames; their times tell it.
                 Err(RecvError::Lagged(_)) => continue,
@@ -149,8 +151,12 @@ async fn write(
                 Err(RecvError::Lagged(_)) => continue,
                 Err(RecvError::Closed) => return,
             },
-            () = sleep(BEAT_EVERY) => vec![text(&json!({ "beat": Value::Null }))],
+            () = sleep_until(beat_at) => vec![text(&json!({ "beat": Value::Null }))],
         };
+        // What is news for others only is not heard here.
+        if !messages.is_empty() {
+            beat_at = Instant::now() + BEAT_EVERY;
+        }
         for message in messages {
             if send(&mut sink, message).await.is_err() {
                 return;
@@ -168,13 +174,14 @@ async fn next_of(samples: &mut Option<broadcast::Receiver<Bytes>>) -> Result<Byt
 }
 
 /// Messages that are new for a page.
-fn news(sent: &Latest, now: &Latest) -> Vec<Message> {
-    let pairs = sent.messages().into_iter().zip(now.messages());
+fn news(sent: &Latest, now: &Latest, role: Role, page: Page) -> Vec<Message> {
+    let before = sent.messages(role, page).into_iter();
+    let pairs = before.zip(now.messages(role, page));
     let changed = pairs
         .filter(|(sent, now)| sent != now && !now.is_empty())
         .map(|(_, now)| now);
-    let notes = now.notes.iter().skip(sent.notes.len());
-    changed.chain(notes).cloned().map(Message::Text).collect()
+    let notes = now.notes(role).iter().skip(sent.notes(role).len());
+    changed.chain(notes.cloned()).map(Message::Text).collect()
 }
 
 async fn send(sink: &mut Sink, message: Message) -> Result<(), ()> {
@@ -226,7 +233,7 @@ async fn read(
                 }
             }
             Ok(FromPage::Hand { hand, holds }) => {
-                if shared.control.is_held_by(page) {
+                if Right::Control.is_of(role) && shared.control.is_held_by(page) {
                     shared.hand_requests.put(HandRequest {
                         page,
                         angle_deg: hand,
@@ -235,7 +242,7 @@ async fn read(
                 }
             }
             Ok(FromPage::Listen { listen }) => {
-                listens.send_replace(listen);
+                listens.send_replace(listen && Right::Look.is_of(role));
             }
             Err(_) => {
                 let id = serde_json::from_str::<Value>(&message)
@@ -282,10 +289,8 @@ fn begin(
     (page, role): (Page, Role),
     shared: &Shared,
 ) -> Answer {
-    if request.right() != Right::Anybody && role != Role::Teacher {
-        return Answer::Known(Err(
-            "this link is for looking on: the teacher's link is needed for that".to_owned(),
-        ));
+    if !request.right().is_of(role) {
+        return Answer::Known(Err(beyond(role).to_owned()));
     }
     if request.expires()
         && let Err(error) = check_age(newest, shared)
@@ -298,6 +303,7 @@ fn begin(
             .ok_or_else(|| format!("there is no fault {code}"))
             .map(|page| Answer::Known(Ok(page))),
         Request::Recordings => question(Asked::List, shared),
+        Request::Lessons => question(Asked::Lessons, shared),
         Request::Open { recording } => question(Asked::Open { recording }, shared),
         Request::Trace {
             recording,
@@ -317,6 +323,16 @@ fn begin(
         request => shared.order(request, page, role).map(Answer::Ordered),
     };
     begun.unwrap_or_else(|error| Answer::Known(Err(error)))
+}
+
+/// Text for a request to which a link of this role gives no right.
+fn beyond(role: Role) -> &'static str {
+    match role {
+        Role::Teacher => "this is for a student's link: answers are entered in the lesson here",
+        Role::Remote => "the remote cannot do that: use the teacher's page",
+        Role::Viewer => "this link is for looking on: the teacher's link is needed for that",
+        Role::Student => "this link is for answers: the teacher's link is needed for that",
+    }
 }
 
 /// Rejects a request that was delayed on its way.

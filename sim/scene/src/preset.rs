@@ -22,6 +22,7 @@
 
 mod disorder;
 mod json;
+mod severity;
 mod shipped;
 
 pub use crate::effects::is_disorder;

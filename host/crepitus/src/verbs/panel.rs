@@ -7,6 +7,7 @@ use crate::cli::DeviceArguments;
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
 use crate::line::{Line, failure, open_examined};
+use crate::output::to_stdout;
 use clap::Args;
 use crepitus_client::Client;
 use crepitus_files::output::temporary_in;
@@ -15,6 +16,7 @@ use crepitus_recording::{Damage, Recording};
 use program::ThisProgram;
 use serde_json::json;
 use std::fs;
+use std::io::{IsTerminal, stdout};
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 
@@ -31,7 +33,8 @@ Examples:
 
 The page is served to this computer alone, under a link with a secret; a second link is for looking on. \
 One page has control and may turn the motor on; every page may stop. If the controlling page is closed or \
-does not answer for 200 ms, the motor is off.
+does not answer for 200 ms, the motor is off. With --lan a third link, as a QR code, is for students who \
+answer by phone.
 
 To see it from another computer, `ssh -L 8080:localhost:8080` with `--port 8080` is safest; --lan serves \
 it to a network with a certificate that browsers warn about.")]
@@ -137,6 +140,9 @@ fn announce(
     let Links {
         teacher,
         viewer,
+        student,
+        remote,
+        student_code,
         certificate,
     } = panel.links();
     if as_json {
@@ -144,6 +150,8 @@ fn announce(
             "shown": shown,
             "teacher": teacher,
             "viewer": viewer,
+            "student": student,
+            "remote": remote,
             "certificate": certificate,
         }))?;
     } else {
@@ -151,6 +159,12 @@ fn announce(
             "{shown}\n{teacher}\n  this link controls: keep it to yourself\n{viewer}\n  this one is for \
              looking on, and can stop\nCtrl-C turns the motor off and ends the panel\n"
         ))?;
+        if let Some(code) = student_code
+            && arguments.replay.is_empty()
+        {
+            print(&format!("{student}\n  this one is for students' phones\n"))?;
+            print_code(code)?;
+        }
         if let Some(certificate) = certificate {
             print(&format!(
                 "browsers warn about the certificate; compare its SHA-256 fingerprint:\n  {certificate}\n"
@@ -169,4 +183,20 @@ fn announce(
             Ok(None)
         }
     }
+}
+
+/// Prints a QR code whose light modules are blocks: white on black, whatever the colours of the terminal are. Without a
+/// terminal no camera sees it.
+fn print_code(code: &str) -> Result<(), Failure> {
+    if !stdout().is_terminal() {
+        return Ok(());
+    }
+    // Terminals of older versions of Windows show the codes of colours, and are black.
+    let (begin, end) = if cfg!(windows) {
+        ("", "")
+    } else {
+        ("\x1b[97;40m", "\x1b[0m")
+    };
+    let lines = code.lines().map(|line| format!("{begin}{line}{end}\n"));
+    to_stdout(&lines.collect::<String>()).map_err(|_| Failure::NoReader)
 }

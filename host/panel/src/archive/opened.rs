@@ -1,10 +1,12 @@
 //! A recording that is open.
 
-use crate::lesson::{By, Session};
+use crate::lesson::{By, Knee, Session};
 use crate::live::{Bin, Bins};
 use crepitus_protocol::parameters::{Kind, PARAMETERS};
 use crepitus_protocol::{TICKS_PER_S, Values};
 use crepitus_recording::{Recording, named_values, seconds};
+use crepitus_scene::preset::{Preset, shipped};
+use crepitus_scene::values::{knee, with_preset};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -91,10 +93,23 @@ impl Opened {
             "notes": notes(self.recording.path()),
             "warnings": self.recording.warnings(),
             "parameters": parameters,
+            "knee": self.knee(),
             "changes": self.recording.parameters().changes()
                 .map(|(row, text)| json!({ "row": row, "text": text }))
                 .collect::<Vec<_>>(),
         })
+    }
+
+    /// The knee at its begin, if it is one that ships.
+    fn knee(&self) -> Option<Knee> {
+        let mut in_force = self.recording.parameters().in_force();
+        in_force.at(0);
+        let values = in_force.values()?;
+        if knee(&values).is_ok_and(|knee| knee.effects().next().is_none()) {
+            return Some(Knee::healthy());
+        }
+        let is_it = |preset: &&Preset| with_preset(&values, preset, false) == values;
+        shipped().iter().find(is_it).map(Knee::from)
     }
 
     /// The parameters at its begin that are not at their defaults.
@@ -186,24 +201,23 @@ fn notes(file: &Path) -> Vec<Value> {
     let Some(trial) = recorded.map(|one| one.trial) else {
         return Vec::new();
     };
-    let notes = || {
-        session
-            .lesson
-            .notes()
-            .iter()
-            .filter(|note| note.trial == trial)
-    };
-    // The lesson notes the begin of a trial, which is that of its recording.
-    let Some(begin_s) = notes()
-        .find(|note| note.by == By::Lesson)
-        .map(|note| note.time_s)
-    else {
-        return Vec::new();
-    };
-    notes()
-        .filter(|note| note.by == By::Teacher && note.time_s >= begin_s)
-        .map(|note| json!({ "time_s": note.time_s - begin_s, "text": note.text }))
-        .collect()
+    // The lesson notes the begin of a trial, which is that of its recording: of one that was started again, the last.
+    let mut begin_s = None;
+    let mut notes = Vec::new();
+    for note in session.lesson.notes() {
+        if note.trial != trial {
+            continue;
+        }
+        if note.by == By::Lesson {
+            begin_s = Some(note.time_s);
+            notes.clear();
+        } else if let Some(begin_s) = begin_s
+            && note.time_s >= begin_s
+        {
+            notes.push(json!({ "time_s": note.time_s - begin_s, "text": note.text }));
+        }
+    }
+    notes
 }
 
 /// The tick of a time.

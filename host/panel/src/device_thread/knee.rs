@@ -1,7 +1,9 @@
 //! The knee: presets and parameters. Every change is one commit.
 
 use super::DeviceThread;
+use super::lessons::Held;
 use crate::hello;
+use crate::lesson::{Knee, Lesson};
 use crate::live::Pain;
 use crate::request::SavePreset;
 use crate::shared::Outcome;
@@ -53,6 +55,21 @@ impl<T: Transport> DeviceThread<'_, T> {
         own.find(|preset| preset.name == name).ok_or_else(|| {
             format!("there is no preset {name:?}: reload the page for the current list")
         })
+    }
+
+    /// Applies the next knee on the scale of its disorder.
+    pub(super) fn change_severity(&mut self, worse: bool) -> Outcome {
+        self.check_open()?;
+        let name = self.knee_name();
+        let now = name.as_deref().and_then(preset::find);
+        let now = now.ok_or("choose a disorder of the list first: this knee has no scale")?;
+        let at_its_end = if worse {
+            "there is no worse form of this knee"
+        } else {
+            "there is no milder form of this knee"
+        };
+        let next = now.neighbour(worse).ok_or(at_its_end)?;
+        self.apply(&next.name, false)
     }
 
     pub(super) fn set(&mut self, changes: &[(u8, f64)]) -> Outcome {
@@ -183,6 +200,21 @@ impl<T: Transport> DeviceThread<'_, T> {
             |latest| &mut latest.parameters,
             &json!({ "parameters": message }),
         );
+        self.publish_knee();
+    }
+
+    /// Tells the teacher's own phone the knee on the device and the one to come, also in a blind trial.
+    pub(super) fn publish_knee(&self) {
+        let knee_of = |name: &str| match name {
+            HEALTHY => Ok(Knee::healthy()),
+            name => self.preset_of(name).map(|preset| Knee::from(&preset)),
+        };
+        let now = self.knee_name().and_then(|name| knee_of(&name).ok());
+        let coming = self.lesson.as_ref().map(Held::lesson);
+        let coming = coming.filter(|lesson| !lesson.ended() && !lesson.began());
+        let next = coming.map(Lesson::knee);
+        let message = json!({ "knee": { "now": now, "next": next } });
+        self.publish(|latest| &mut latest.knee, &message);
     }
 
     /// Name of the preset whose knee the device has: of the one applied last, or else of the first with these numbers.

@@ -3,6 +3,7 @@
 use super::DeviceThread;
 use super::knee::HEALTHY;
 use super::recording::extension;
+use crate::class::Keys;
 use crate::lesson::{
     By, Feedback, Knee, Known, Lesson, MOST_SEED, Plan, Session, SessionFolder, Started, plans,
     report,
@@ -29,12 +30,43 @@ pub(super) struct Held {
     /// Time at which the healthy knee was applied between two trials, s; none while that of
     /// a trial is on the device.
     left_s: Option<f64>,
+    /// Keys of the students' phones, as they are stored.
+    keys: Keys,
 }
 
 /// Time in which the torque of a knee that was left has ended: parameters ramp.
 const SETTLED_S: f64 = 1.0;
 
 impl Held {
+    fn new(session: Session, folder: Option<SessionFolder>) -> Self {
+        Self {
+            session,
+            folder,
+            began_s: 0.0,
+            samples: 0,
+            under_torque: 0,
+            left_s: None,
+            keys: Keys::new(),
+        }
+    }
+
+    /// A lesson that was interrupted; the device has the healthy knee from now on.
+    pub(super) fn resumed(session: Session, folder: SessionFolder, keys: Keys, at_s: f64) -> Self {
+        Self {
+            left_s: Some(at_s),
+            keys,
+            ..Self::new(session, Some(folder))
+        }
+    }
+
+    pub(super) fn lesson(&self) -> &Lesson {
+        &self.session.lesson
+    }
+
+    pub(super) fn lesson_mut(&mut self) -> &mut Lesson {
+        &mut self.session.lesson
+    }
+
     /// Returns whether pages must not see which knee it is.
     pub(super) fn is_hidden(&self, now_s: f64) -> bool {
         let lesson = &self.session.lesson;
@@ -68,12 +100,18 @@ impl Held {
 }
 
 impl<T: Transport> DeviceThread<'_, T> {
-    pub(super) fn begin_lesson(&mut self, what: &LessonBegin) -> Outcome {
+    /// Rejects a lesson while another one is running.
+    pub(super) fn check_no_lesson(&self) -> Result<(), String> {
         if let Some(held) = &self.lesson
             && !held.session.lesson.ended()
         {
             return Err("a lesson is running: end it first".to_owned());
         }
+        Ok(())
+    }
+
+    pub(super) fn begin_lesson(&mut self, what: &LessonBegin) -> Outcome {
+        self.check_no_lesson()?;
         let (name, mut plan) = match (&what.lesson, &what.plan) {
             (Some(name), None) => {
                 let file = plans::find(name).ok_or_else(|| format!("no lesson {name:?} ships"))?;
@@ -99,8 +137,9 @@ impl<T: Transport> DeviceThread<'_, T> {
             Some(seed) => seed,
             None => drawn_seed()?,
         };
-        let lesson = Lesson::begin(&name, plan, what.students.clone(), seed)
-            .map_err(|error| error.to_string())?;
+        let students = self.with_class(&what.students);
+        let lesson = Lesson::begin(&name, plan, students, seed);
+        let lesson = lesson.map_err(|error| error.to_string())?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
         let started = Started::from_unix(now.unwrap_or_default().as_secs())
             .ok_or("the computer's clock is wrong: set it first")?;
@@ -115,21 +154,15 @@ impl<T: Transport> DeviceThread<'_, T> {
             None => None,
         };
         self.end_recording();
-        self.lesson = Some(Held {
-            session,
-            folder,
-            began_s: 0.0,
-            samples: 0,
-            under_torque: 0,
-            left_s: None,
-        });
-        self.hide_recordings();
+        self.lesson = Some(Held::new(session, folder));
+        self.store_keys();
         self.publish_lesson();
         Ok(json!({ "seed": seed }))
     }
 
     /// Applies the knee of the current trial, and records it.
     pub(super) fn start_trial(&mut self) -> Outcome {
+        self.admit_students();
         let now_s = self.now_s;
         let held = self.lesson.as_mut().ok_or(NO_LESSON)?;
         let before = (held.session.lesson.clone(), held.left_s);
@@ -168,11 +201,13 @@ impl<T: Transport> DeviceThread<'_, T> {
     }
 
     fn record_trial(&mut self, trial: usize) -> Result<(), String> {
-        let folder = self.lesson.as_ref().and_then(|held| held.folder.as_ref());
-        let Some(folder) = folder else {
+        let Some(held) = &self.lesson else {
             return Ok(());
         };
-        let file = folder.recording(trial).with_extension(extension());
+        let Some(folder) = &held.folder else {
+            return Ok(());
+        };
+        let file = folder.next_recording(&held.session, trial, extension());
         self.begin_recording(&file, &format!("Trial {trial}"))?;
         if let (Some(held), Some(name)) = (&mut self.lesson, file.file_name()) {
             held.session.recorded(trial, &name.to_string_lossy());
@@ -190,7 +225,22 @@ impl<T: Transport> DeviceThread<'_, T> {
         }
     }
 
+    /// An answer that is entered on the teacher's page.
     pub(super) fn answer(
+        &mut self,
+        student: &str,
+        disorder: &str,
+        level: Option<&str>,
+        confidence: u8,
+    ) -> Outcome {
+        self.take_answer(student, disorder, level, confidence)?;
+        self.publish_parameters();
+        self.changed();
+        Ok(Value::Null)
+    }
+
+    /// Enters an answer, which is not stored yet.
+    pub(super) fn take_answer(
         &mut self,
         student: &str,
         disorder: &str,
@@ -202,11 +252,8 @@ impl<T: Transport> DeviceThread<'_, T> {
         let share = held.torque_share();
         let lesson = &mut held.session.lesson;
         lesson.set_torque_share(share);
-        lesson
-            .answer(student, disorder, level, confidence, now_s)
-            .map_err(|error| error.to_string())?;
-        self.publish_parameters();
-        self.changed();
+        let answered = lesson.answer(student, disorder, level, confidence, now_s);
+        answered.map_err(|error| error.to_string())?;
         Ok(Value::Null)
     }
 
@@ -225,6 +272,7 @@ impl<T: Transport> DeviceThread<'_, T> {
         self.end_recording();
         self.leave_knee();
         self.changed();
+        self.store_keys();
         let held = self.lesson.as_ref().ok_or(NO_LESSON)?;
         if let Some(folder) = &held.folder {
             let strings = Strings::of(language);
@@ -241,7 +289,6 @@ impl<T: Transport> DeviceThread<'_, T> {
             return Err("the lesson is running: end it first".to_owned());
         }
         self.lesson = None;
-        self.hide_recordings();
         self.publish_lesson();
         Ok(Value::Null)
     }
@@ -250,7 +297,6 @@ impl<T: Transport> DeviceThread<'_, T> {
     fn leave_knee(&mut self) {
         self.pace = None;
         self.publish_target();
-        self.hide_recordings();
         let left = if self.is_lost {
             Err("the device is not connected: it still has the last knee".to_owned())
         } else {
@@ -262,20 +308,6 @@ impl<T: Transport> DeviceThread<'_, T> {
             _ => {}
         }
         self.publish_parameters();
-    }
-
-    /// The recordings of a blind lesson that is running tell which knee it is.
-    fn hide_recordings(&self) {
-        let held = self.lesson.as_ref();
-        let running = held.filter(|held| {
-            let lesson = &held.session.lesson;
-            lesson.plan().blind && !lesson.ended()
-        });
-        let folder = running.and_then(|held| held.folder.as_ref());
-        let hidden = folder.map(|folder| folder.path().to_owned());
-        if let Ok(mut place) = self.shared.hidden.lock() {
-            *place = hidden;
-        }
     }
 
     /// The report, as a page that can be opened once.
@@ -310,8 +342,27 @@ impl<T: Transport> DeviceThread<'_, T> {
         Ok(&mut held.session.lesson)
     }
 
+    /// Stores the keys of the students' phones while the lesson runs; then they are of no use.
+    pub(super) fn store_keys(&mut self) {
+        let Some(held) = &mut self.lesson else {
+            return;
+        };
+        let keys = if held.session.lesson.ended() {
+            Keys::new()
+        } else {
+            self.class.keys()
+        };
+        if let Some(folder) = held.folder.as_ref().filter(|_| held.keys != keys)
+            && let Err(error) = folder.save_keys(&keys)
+        {
+            self.message = Some(error.to_string());
+            self.status_is_due = true;
+        }
+        held.keys = keys;
+    }
+
     /// Stores the lesson and tells the pages.
-    fn changed(&mut self) {
+    pub(super) fn changed(&mut self) {
         self.save_lesson();
         self.publish_lesson();
     }
@@ -330,19 +381,29 @@ impl<T: Transport> DeviceThread<'_, T> {
         }
     }
 
+    /// Tells every page its part of the lesson.
     pub(super) fn publish_lesson(&mut self) {
-        let lesson = self.lesson.as_ref().map(|held| {
+        let views = self.lesson.as_ref().map(|held| {
             let stored = held.folder.as_ref().map(|folder| text_of(folder.path()));
-            let mut view = json!(held.session.lesson.view(stored.as_deref()));
+            let view = held.lesson().view(stored.as_deref());
             // On the time line of the frames: a page that is reloaded counts on.
-            view["began_s"] = json!(held.session.lesson.began().then_some(held.began_s));
-            view
+            let began_s = held.lesson().began().then_some(held.began_s);
+            [view.clone().public(), view].map(|view| {
+                let mut view = json!(view);
+                view["began_s"] = json!(began_s);
+                view
+            })
         });
+        let [public, lesson] = views.unwrap_or_default();
         self.publish(|latest| &mut latest.lesson, &json!({ "lesson": lesson }));
+        let public = json!({ "lesson": public });
+        self.publish(|latest| &mut latest.public_lesson, &public);
+        self.publish_own();
+        self.publish_knee();
     }
 }
 
-const NO_LESSON: &str = "no lesson is running: begin one first";
+pub(super) const NO_LESSON: &str = "no lesson is running: begin one first";
 
 fn text_of(path: &Path) -> String {
     path.display().to_string()

@@ -5,6 +5,7 @@ use super::torque_end::Cause;
 use crate::control::{Holder, Page};
 use crate::request::{Request, Right};
 use crate::shared::{Order, Outcome};
+use crate::tokens::Role;
 use crepitus_client::{Client, Transport};
 use serde_json::Value;
 use std::collections::VecDeque;
@@ -18,6 +19,7 @@ const LONGEST_QUEUED: Duration = Duration::from_secs(5);
 impl<T: Transport> DeviceThread<'_, T> {
     /// Executes what pages have ordered: a stop first, also one that comes meanwhile.
     pub(super) fn take_orders(&mut self) {
+        let mut is_unstored = false;
         let mut waiting = VecDeque::new();
         loop {
             waiting.extend(self.inbox.try_iter());
@@ -38,10 +40,24 @@ impl<T: Transport> DeviceThread<'_, T> {
                         self.torque_ends(Cause::Disarm);
                         self.done(Client::disarm)
                     }
+                    Request::Join { name, key } => self.join(page, &name, key.as_deref()),
+                    Request::Answer {
+                        trial,
+                        disorder,
+                        level,
+                        confidence,
+                    } => {
+                        is_unstored = true;
+                        self.answer_own(page, trial, &disorder, level.as_deref(), confidence)
+                    }
                     request => self.execute(request),
                 }
             });
             self.status_is_due = true;
+            if std::mem::take(&mut is_unstored) && outcome.is_ok() {
+                self.unstored.push(order.reply);
+                continue;
+            }
             // The page may be gone.
             let _ = order.reply.send(outcome);
         }
@@ -51,7 +67,15 @@ impl<T: Transport> DeviceThread<'_, T> {
     /// a stop, and one that has waited for too long.
     fn check(&self, order: &Order) -> Result<(), String> {
         let Order { request, page, .. } = order;
-        if request.right() == Right::Control && !self.shared.control.is_held_by(*page) {
+        let right = request.right();
+        if right == Right::Run && order.role == Role::Remote {
+            // Its page answers for the torque.
+            if !matches!(self.shared.control.holder(), Holder::Page(_)) {
+                return Err("no page has control: take control on the teacher's page".to_owned());
+            }
+        } else if matches!(right, Right::Control | Right::Run)
+            && !self.shared.control.is_held_by(*page)
+        {
             return Err("another page has control: take control first".to_owned());
         }
         if *request == Request::Arm && order.stops != self.shared.stops.load(Ordering::Relaxed) {
@@ -95,6 +119,9 @@ impl<T: Transport> DeviceThread<'_, T> {
     fn end_control(&mut self, page: Page) -> Outcome {
         // Given since the page has left.
         self.shared.control.release(page);
+        if self.class.left(page) {
+            self.publish_class();
+        }
         if self.shared.control.holder() != Holder::Nobody || !self.client.is_armed() || self.is_lost
         {
             return Ok(Value::Null);

@@ -45,8 +45,11 @@ impl<T: Transport> DeviceThread<'_, T> {
         } else {
             self.client.status().ok()
         };
-        let message = json!({ "status": self.status(known.as_ref()) });
-        self.publish(|latest| &mut latest.status, &message);
+        let status = self.status(known.as_ref());
+        // What a phone needs to say that a stop has worked.
+        let state = json!({ "link": status["link"], "state": status["state"] });
+        self.publish(|latest| &mut latest.status, &json!({ "status": status }));
+        self.publish(|latest| &mut latest.state, &json!({ "status": state }));
         if let Some(status) = known
             && status.revision != self.committed
         {

@@ -4,6 +4,8 @@ use super::recording::extension;
 use super::{DeviceThread, Program};
 use crate::control::{Holder, Page};
 use crate::frame::{HEADER, Kind, Masks};
+use crate::invitations::Invitations;
+use crate::lesson::Session as LessonSession;
 use crate::request::{LessonBegin, Request as FromPage, SavePreset};
 use crate::shared::{Outcome, Shared};
 use crate::tokens::{Role, Tokens};
@@ -137,7 +139,9 @@ fn device_thread(program: &Alone) -> DeviceThread<'_, Flood> {
     let (orders, inbox) = mpsc::channel();
     let (questions, _) = mpsc::channel();
     let tokens = Tokens::draw().expect("a secret");
-    let shared = Arc::new(Shared::new(tokens, Value::Null, orders, questions));
+    let links = Invitations::default();
+    let shared = Shared::new(tokens, Value::Null, links, orders, questions);
+    let shared = Arc::new(shared);
     DeviceThread::new(client, program, shared, inbox, None, hand).expect("it answers")
 }
 
@@ -325,6 +329,50 @@ fn a_trial_that_cannot_be_recorded_has_not_begun() {
     assert!(device_thread.recording.is_some());
 }
 
+/// Torque does not wait for the disk as often as there are students.
+#[test]
+fn a_class_that_answers_together_is_stored_once_and_then_confirmed() {
+    let program = Alone::default();
+    let mut device_thread = device_thread(&program);
+    let shared = device_thread.shared.clone();
+    let sessions = tempfile::tempdir().unwrap();
+    device_thread.sessions = Some(sessions.path().to_owned());
+    device_thread.open_class(true).expect("open");
+    let pages: Vec<_> = (0..10).map(|_| shared.control.page()).collect();
+    for page in &pages {
+        let name = format!("s{page}");
+        device_thread.join(*page, &name, None).expect("a seat");
+    }
+    let lesson = LessonBegin {
+        lesson: Some("blind-six".to_owned()),
+        plan: None,
+        students: Vec::new(),
+        seed: Some(7),
+        repeats: None,
+    };
+    device_thread.begin_lesson(&lesson).expect("a lesson");
+    device_thread.start_trial().expect("a trial");
+    let answer = FromPage::Answer {
+        trial: 1,
+        disorder: "clonus".to_owned(),
+        level: None,
+        confidence: 3,
+    };
+    let queued = |page: &Page| shared.order(answer.clone(), *page, Role::Student);
+    let mut outcomes: Vec<_> = pages.iter().map(|page| queued(page).unwrap()).collect();
+    let folder = std::fs::read_dir(sessions.path()).unwrap().next().unwrap();
+    let folder = folder.unwrap().path();
+    let stored = || LessonSession::read(&folder).unwrap().lesson.answers().len();
+    device_thread.take_orders();
+    assert_eq!(stored(), 0);
+    assert!(outcomes.iter_mut().all(|outcome| outcome.try_recv().is_err()));
+    device_thread.store_answers();
+    assert_eq!(stored(), pages.len());
+    for mut outcome in outcomes {
+        assert_eq!(outcome.try_recv(), Ok(Ok(Value::Null)));
+    }
+}
+
 /// Queues a request as the connection of a page does.
 fn order(shared: &Shared, page: Page, request: FromPage) -> Receiver<Outcome> {
     // The page answers its frames: nothing but the right decides.
@@ -429,6 +477,7 @@ fn an_end_of_torque_says_who_ended_it() {
         |device_thread: &DeviceThread<'_, Flood>| device_thread.torque.end()["cause"].clone();
     for expected in [
         "stop-viewer",
+        "stop-student",
         "disarm",
         "take-over",
         "page-left",
@@ -441,6 +490,9 @@ fn an_end_of_torque_says_who_ended_it() {
         match expected {
             "stop-viewer" => {
                 drop(shared.order(FromPage::Stop, other, Role::Viewer));
+            }
+            "stop-student" => {
+                drop(shared.order(FromPage::Stop, other, Role::Student));
             }
             "disarm" => drop(order(&shared, page, FromPage::Disarm)),
             "take-over" => drop(order(&shared, other, FromPage::Take)),

@@ -34,7 +34,9 @@ impl Cause {
     fn name(&self) -> &'static str {
         match self {
             Self::Stop(Role::Teacher) => "stop-teacher",
+            Self::Stop(Role::Remote) => "stop-remote",
             Self::Stop(Role::Viewer) => "stop-viewer",
+            Self::Stop(Role::Student) => "stop-student",
             Self::Disarm => "disarm",
             Self::TakeOver => "take-over",
             Self::PageLeft => "page-left",

@@ -5,6 +5,7 @@
 //!   session.json      all of it: plan, seed, order, truth, students, answers, notes, recordings
 //!   answers.csv       one line an answer, with the truth
 //!   notes.csv         one line a note; an apostrophe before what a spreadsheet would compute
+//!   class.json        keys of the students' phones, until the lesson ends
 //!   trial-01.parquet  recordings, named by trial: the name does not tell the knee
 //!   report.html       the page to print
 //! ```
@@ -13,6 +14,8 @@
 //! and the one that was there stays if the disk is full. A table that somebody has edited meanwhile stays, too,
 //! and the error says so. `session.json` is written first: whatever
 //! happens after it, [`Session::read`] has the answers.
+
+mod keys;
 
 use crate::lesson::finding::Finding;
 use crate::lesson::report::{Text, report};
@@ -119,6 +122,22 @@ impl SessionFolder {
         self.path.join(recording_name(trial))
     }
 
+    /// File of a trial's next recording, from 1, with this extension. One that an interrupted program has left
+    /// stays beside it.
+    pub fn next_recording(&self, session: &Session, trial: usize, extension: &str) -> PathBuf {
+        let mut path = self.recording(trial).with_extension(extension);
+        if session.recording_of(trial).is_none() {
+            return path;
+        }
+        for number in 2.. {
+            if !path.exists() {
+                break;
+            }
+            path.set_file_name(format!("trial-{trial:02}-{number}.{extension}"));
+        }
+        path
+    }
+
     /// Writes session, answers and notes. To be called after every change.
     ///
     /// # Errors
@@ -196,6 +215,12 @@ const REPORT: &str = "report.html";
 /// Name of a trial's recording, from 1.
 pub(crate) fn recording_name(trial: usize) -> String {
     format!("trial-{trial:02}.parquet")
+}
+
+/// The trial, from 1, of a recording's file name.
+pub(crate) fn trial_of(file: &str) -> Option<usize> {
+    let digits = file.strip_prefix("trial-")?.split(['-', '.']).next()?;
+    digits.parse().ok()
 }
 
 fn io_error(error: OutputError) -> io::Error {

@@ -29,15 +29,18 @@
 //! caller.
 
 mod error;
+mod students;
 
 pub use error::{BeginError, LessonError};
+pub(crate) use students::{check_pseudonym, is_same_name};
 
 use crate::lesson::finding::{Finding, Knee, find_level, level_name};
 use crate::lesson::order;
-use crate::lesson::plan::{CheckedPlan, Feedback, MOST_STUDENTS, Plan, PlannedKnee};
+use crate::lesson::plan::{CheckedPlan, Feedback, Plan, PlannedKnee};
 use crepitus_scene::preset::Level;
-use error::{MOST_NOTE, MOST_PSEUDONYM};
+use error::MOST_NOTE;
 use serde::{Deserialize, Serialize};
+use students::check_students;
 
 /// Largest seed: a number that JavaScript, JSON and a person's note keep exactly, 2⁵³ - 1.
 pub const MOST_SEED: u64 = (1 << 53) - 1;
@@ -257,6 +260,14 @@ impl Lesson {
         Ok(())
     }
 
+    /// Takes the lesson up again after the program that held it was interrupted: no device has the knee of the
+    /// current trial any more, so it has to be started again. Its answers stay. A trial whose knee was revealed
+    /// stays begun: the next one follows.
+    pub fn take_up(&mut self) {
+        let is_over = self.plan().blind && self.is_revealed(self.trial());
+        self.began = self.began && is_over;
+    }
+
     /// Ends the lesson.
     ///
     /// # Errors
@@ -384,33 +395,6 @@ impl Lesson {
         }
         Ok(())
     }
-}
-
-/// Checks number and form of the pseudonyms, and that no two are equal.
-fn check_students(students: &[String], blind: bool) -> Result<(), BeginError> {
-    let least = usize::from(blind);
-    if !(least..=MOST_STUDENTS).contains(&students.len()) {
-        let students = students.len();
-        return Err(BeginError::Students { students });
-    }
-    for (place, pseudonym) in students.iter().enumerate() {
-        let allowed = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
-        let count = pseudonym.chars().count();
-        if !(1..=MOST_PSEUDONYM).contains(&count)
-            || !pseudonym.chars().all(allowed)
-            || !pseudonym.starts_with(char::is_alphanumeric)
-            || !pseudonym.ends_with(char::is_alphanumeric)
-        {
-            let pseudonym = pseudonym.clone();
-            return Err(BeginError::Pseudonym { pseudonym });
-        }
-        let same = |other: &String| other.to_lowercase() == pseudonym.to_lowercase();
-        if students.iter().take(place).any(same) {
-            let pseudonym = pseudonym.clone();
-            return Err(BeginError::Duplicate { pseudonym });
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

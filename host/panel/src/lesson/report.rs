@@ -16,9 +16,6 @@ use words::Words;
 /// Looks a text up by its key: the caller's table of the reader's language.
 pub type Text<'a> = &'a dyn Fn(&str) -> String;
 
-/// Fewest answers whose interval is more than rough.
-const ENOUGH: usize = 20;
-
 /// The report as HTML, complete in itself.
 pub fn report(session: &Session, text: Text<'_>) -> String {
     let words = Words(text);
@@ -283,23 +280,9 @@ fn notes(session: &Session, words: &Words<'_>) -> Markup {
 
 /// Remarks on how to read the numbers.
 fn remarks(summary: &Summary, words: &Words<'_>) -> Markup {
-    let students = || summary.students.iter().map(|student| &student.scores);
-    let without_torque = summary.all.without_torque > 0;
-    let few = students().any(|scores| scores.answers < ENOUGH);
-    let no_width = |scores: &Scores| {
-        let both = [scores.kappa, scores.level_kappa];
-        both.iter().flatten().any(|kappa| kappa.low >= kappa.high)
-    };
-    let keys = [
-        ("report.about_kappa", true),
-        ("report.left_out", without_torque),
-        ("report.few", few),
-        ("report.no_width", students().any(no_width)),
-        ("report.pooled", summary.students.len() > 1),
-    ];
     html! {
         p.remark {
-            @for (key, _) in keys.iter().filter(|(_, said)| *said) { (words.get(key)) " " }
+            @for key in &summary.remarks { (words.get(&format!("report.{key}"))) " " }
         }
     }
 }

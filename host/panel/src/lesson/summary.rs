@@ -18,6 +18,8 @@ pub struct Summary {
     /// Results of all answers together. Answers of several students to the same knee are not
     /// independent: the interval of this kappa is too narrow.
     pub all: Scores,
+    /// Remarks on how to read the numbers: keys of texts, after `report.`.
+    pub remarks: Vec<&'static str>,
 }
 
 /// Results of a student.
@@ -92,14 +94,37 @@ impl Summary {
             student: student.clone(),
             scores: Scores::of(lesson, answers().filter(|a| a.student == *student)),
         });
+        let students: Vec<_> = students.collect();
         let all = Scores::of(lesson, answers());
         Self {
             answers: all.answers,
             right: all.right,
-            students: students.collect(),
+            remarks: remarks(&students, &all),
+            students,
             all,
         }
     }
+}
+
+/// Fewest answers whose interval is more than rough.
+const ENOUGH: usize = 20;
+
+/// Remarks on these results.
+fn remarks(students: &[StudentScores], all: &Scores) -> Vec<&'static str> {
+    let is_any = |has: fn(&Scores) -> bool| students.iter().any(|student| has(&student.scores));
+    let has_no_width = |scores: &Scores| {
+        let both = [scores.kappa, scores.level_kappa];
+        both.iter().flatten().any(|kappa| kappa.low >= kappa.high)
+    };
+    let remarks = [
+        ("about_kappa", true),
+        ("left_out", all.without_torque > 0),
+        ("few", is_any(|scores| scores.answers < ENOUGH)),
+        ("no_width", is_any(has_no_width)),
+        ("pooled", students.len() > 1),
+    ];
+    let said = remarks.into_iter().filter(|(_, is_said)| *is_said);
+    said.map(|(key, _)| key).collect()
 }
 
 /// Number of findings: healthy and every disorder.

@@ -1,6 +1,7 @@
 //! The `lesson` message of the page: what may be seen of a lesson at this moment.
 //!
-//! The message holds nothing that is hidden, so it can be sent to every page.
+//! The message holds no knee that is hidden, so every teacher's page gets it. Viewers get its [public](View::public)
+//! part, a student [their own](crate::lesson::OwnView).
 
 use crate::lesson::finding::{Finding, Knee, level_name};
 use crate::lesson::lesson::{Answer, Lesson};
@@ -24,8 +25,8 @@ pub struct View {
     pub curves: bool,
     /// Time at which answers are judged.
     pub feedback: Feedback,
-    /// Seed of the order.
-    pub seed: u64,
+    /// Seed of the order; `None` for those who could look up the knees with it.
+    pub seed: Option<u64>,
     /// Name of the lesson.
     pub name: String,
     /// Folder of the session, if it is stored.
@@ -106,21 +107,19 @@ impl Lesson {
         let plan = self.plan();
         let trial = self.trial();
         let planned = self.planned(trial);
-        let own = planned.and_then(|knee| knee.instruction.as_deref());
-        let instruction = own.or(plan.instruction.as_deref()).unwrap_or_default();
         View {
             title: plan.title.clone(),
             description: plan.description.clone(),
             blind: plan.blind,
             curves: plan.curves,
             feedback: plan.feedback,
-            seed: self.seed(),
+            seed: Some(self.seed()),
             name: self.name().to_owned(),
             stored: stored.map(str::to_owned),
             students: self.students().to_vec(),
             trial,
             trials: self.trials(),
-            instruction: instruction.to_owned(),
+            instruction: self.instruction().to_owned(),
             target: planned.and_then(|knee| knee.target.clone()),
             time_s: planned.and_then(|knee| knee.time_s),
             began: self.began(),
@@ -132,8 +131,16 @@ impl Lesson {
         }
     }
 
+    /// Instruction for the current trial.
+    pub(super) fn instruction(&self) -> &str {
+        let planned = self.planned(self.trial());
+        let own = planned.and_then(|knee| knee.instruction.as_deref());
+        let all = self.plan().instruction.as_deref();
+        own.or(all).unwrap_or_default()
+    }
+
     /// An answer, judged as far as the knee is revealed.
-    fn judged(&self, answer: &Answer) -> AnswerView {
+    pub(super) fn judged(&self, answer: &Answer) -> AnswerView {
         let revealed = self.is_revealed(answer.trial);
         let knee = self.knee_of(answer.trial);
         AnswerView {
@@ -147,6 +154,24 @@ impl Lesson {
             counts: answer.counts(),
             torque_share: answer.torque_share,
         }
+    }
+}
+
+impl View {
+    /// Part for viewers: of the answers no more than who has given one, of the results those of all together,
+    /// and the seed once nothing can be looked up with it.
+    #[must_use]
+    pub fn public(mut self) -> Self {
+        self.stored = None;
+        self.seed = self.seed.filter(|_| self.ended || !self.blind);
+        for answer in &mut self.answers {
+            (answer.disorder, answer.level, answer.confidence) = (None, None, None);
+            (answer.right, answer.level_right) = (None, None);
+        }
+        if let Some(summary) = &mut self.summary {
+            summary.students.clear();
+        }
+        self
     }
 }
 

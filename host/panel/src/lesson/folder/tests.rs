@@ -3,6 +3,7 @@ use crate::lesson::lesson::Lesson;
 use crate::lesson::plan::Known;
 use crate::lesson::plans;
 use crate::lesson::session::Started;
+use std::collections::BTreeMap;
 
 fn session(name: &str) -> Session {
     let known = Known {
@@ -100,4 +101,58 @@ fn what_is_no_session_cannot_be_read() {
     fs::write(folder.path().join(SESSION), "{}").unwrap();
     let error = SessionFolder::open(folder.path()).unwrap_err();
     assert!(matches!(error, FolderError::Session { .. }), "{error}");
+}
+
+#[test]
+fn keys_are_read_back_and_removed() {
+    let parent = tempfile::tempdir().unwrap();
+    let folder = SessionFolder::create(parent.path(), &session("x")).unwrap();
+    assert!(folder.keys().is_empty());
+    let key = "0123456789abcdef0123456789abcdef";
+    let keys = BTreeMap::from([("Ada".to_owned(), key.to_owned())]);
+    folder.save_keys(&keys).unwrap();
+    folder.save_keys(&keys).unwrap();
+    assert_eq!(folder.keys(), keys);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let metadata = fs::metadata(folder.path().join("class.json")).unwrap();
+        assert_eq!(metadata.permissions().mode() & 0o077, 0);
+    }
+    folder.save_keys(&BTreeMap::new()).unwrap();
+    assert_eq!(
+        names(folder.path()),
+        ["answers.csv", "notes.csv", "session.json"]
+    );
+    // What is no key is left out.
+    let text = format!("{{\"Ada\": \"short\", \"<b>\": \"{key}\", \"Ben\": \"{key}\"}}");
+    fs::write(folder.path().join("class.json"), text).unwrap();
+    assert_eq!(folder.keys().into_keys().collect::<Vec<_>>(), ["Ben"]);
+}
+
+#[test]
+fn the_recording_of_a_trial_that_was_interrupted_stays() {
+    let parent = tempfile::tempdir().unwrap();
+    let mut session = session("x");
+    let folder = SessionFolder::create(parent.path(), &session).unwrap();
+    let mut files = Vec::new();
+    for _ in 0..3 {
+        let path = folder.next_recording(&session, 1, "parquet");
+        assert!(!path.exists());
+        fs::write(&path, "a recording").unwrap();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        assert_eq!(trial_of(&name), Some(1));
+        session.recorded(1, &name);
+        files.push(name);
+    }
+    let expected = [
+        "trial-01.parquet",
+        "trial-01-2.parquet",
+        "trial-01-3.parquet",
+    ];
+    assert_eq!(files, expected);
+    assert_eq!(trial_of("trial-12.crepitus"), Some(12));
+    for other in ["trial-", "trial-x.parquet", "monday.parquet", ""] {
+        assert_eq!(trial_of(other), None, "{other}");
+    }
 }

@@ -71,6 +71,9 @@ pub enum LessonError {
         /// Trial, from 1.
         trial: usize,
     },
+    /// A student cannot be admitted.
+    #[error(transparent)]
+    Student(#[from] BeginError),
     /// Answer where the knee is shown: there is nothing to answer.
     #[error("this lesson is open, its knees are shown: answers belong to a blind lesson")]
     Open,

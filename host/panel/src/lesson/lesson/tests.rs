@@ -197,3 +197,51 @@ fn notes_have_a_text() {
     let long = "x".repeat(501);
     assert!(lesson.note(1.0, &long, By::Teacher).is_err());
 }
+
+#[test]
+fn a_student_who_comes_later_is_admitted_between_trials() {
+    let mut lesson = begin(&["A"], |_| ());
+    lesson.start().unwrap();
+    assert_eq!(lesson.admit("B"), Err(LessonError::Begun { trial: 1 }));
+    lesson.answer("A", "clonus", None, 1, 1.0).unwrap();
+    assert!(lesson.is_revealed(1));
+    lesson.next_trial().unwrap();
+    lesson.admit("B").unwrap();
+    for (name, part) in [("a", "occurs twice"), ("-", "is invalid")] {
+        let error = lesson.admit(name).unwrap_err().to_string();
+        assert!(error.contains(part), "{error}");
+    }
+    assert_eq!(lesson.students(), ["A", "B"]);
+    // What was revealed stays so, and the new one is waited for.
+    lesson.start().unwrap();
+    lesson.answer("A", "clonus", None, 1, 2.0).unwrap();
+    assert!(lesson.is_revealed(1) && lesson.is_hidden());
+    for nth in 3..=30 {
+        lesson.began = false;
+        lesson.admit(&format!("s{nth}")).unwrap();
+    }
+    let full = lesson.admit("s31").unwrap_err().to_string();
+    assert!(full.contains("at most 30"), "{full}");
+    lesson.end().unwrap();
+    assert_eq!(lesson.admit("C"), Err(LessonError::Ended));
+}
+
+#[test]
+fn a_trial_that_was_interrupted_is_started_again_and_keeps_its_answers() {
+    let mut lesson = begin(&["A", "B"], |_| ());
+    lesson.start().unwrap();
+    lesson.answer("A", "clonus", None, 1, 1.0).unwrap();
+    lesson.take_up();
+    assert!(!lesson.began() && lesson.is_hidden());
+    lesson.start().unwrap();
+    lesson.answer("B", "clonus", None, 1, 1.0).unwrap();
+    assert_eq!(lesson.answers().len(), 2);
+    // All is said of this one: its knee was shown.
+    lesson.take_up();
+    assert!(lesson.began() && !lesson.is_hidden());
+    lesson.next_trial().unwrap();
+    let mut open = begin(&[], |plan| plan.blind = false);
+    open.start().unwrap();
+    open.take_up();
+    assert!(!open.began());
+}

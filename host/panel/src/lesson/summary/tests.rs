@@ -105,3 +105,35 @@ fn an_answer_counts_with_torque_for_half_of_the_time() {
     assert_eq!(summary.students[0].scores.answers, 0);
     assert_eq!(summary.students[0].scores.confidence_right, None);
 }
+
+#[test]
+fn remarks_say_what_the_numbers_do_not() {
+    let known = Known {
+        own_preset: &|_| None,
+        target: &|_| true,
+    };
+    let text = "title = \"x\"\nblind = true\n\
+        [[knee]]\npreset = \"healthy\"\n[[knee]]\npreset = \"fine\"\n";
+    let plan = Plan::from_toml(text).unwrap().check(known).unwrap();
+    let students = ["A", "B"].map(str::to_owned).to_vec();
+    let mut lesson = Lesson::begin("x", plan, students, 5).unwrap();
+    for share in [0.0, 1.0] {
+        lesson.start().unwrap();
+        lesson.set_torque_share(share);
+        let truth = lesson.knee().disorder.unwrap().name();
+        for student in ["A", "B"] {
+            lesson.answer(student, truth, None, 3, 0.0).unwrap();
+        }
+        let _ = lesson.next_trial();
+    }
+    let remarks = Summary::of(&lesson).remarks;
+    assert_eq!(remarks, ["about_kappa", "left_out", "few", "pooled"]);
+    let two = examined(&["healthy", "fine"], &[("healthy", None), ("crepitus", None)]);
+    assert_eq!(two.kappa.map(|kappa| kappa.low >= kappa.high), Some(true));
+    let one = StudentScores {
+        student: "A".to_owned(),
+        scores: two.clone(),
+    };
+    let said = super::remarks(&[one], &two);
+    assert_eq!(said, ["about_kappa", "few", "no_width"]);
+}

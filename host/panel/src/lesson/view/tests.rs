@@ -69,7 +69,9 @@ fn the_message_is_that_of_the_page() {
     });
     let mut student = scores.clone();
     student["student"] = json!("A");
-    expected["summary"] = json!({ "answers": 1, "right": 1, "students": [student], "all": scores });
+    expected["summary"] = json!({
+        "answers": 1, "right": 1, "students": [student], "all": scores, "remarks": ["about_kappa", "few"],
+    });
     assert_eq!(view(&lesson, None), expected);
 }
 
