@@ -3,7 +3,6 @@
 import { latest, on, tell } from "./connection.js";
 import { byId } from "./dom.js";
 import { Feel } from "./feel.js";
-import { Inside } from "./inside.js";
 import { makeSoundControls, Sound } from "./sound.js";
 
 const HEADER = 40;
@@ -44,11 +43,17 @@ export function drawInside(now, bins, isStale) {
   if (byId("inside").open) inside?.draw(now, bins, bins.masked, isStale);
 }
 
+// Its modules are loaded when it is first opened.
+async function open() {
+  if (inside || !latest.hello || !byId("inside").open) return;
+  const { Inside } = await import("./inside.js");
+  const hosts = ["leg", "slow", "loop", "flow"].map((part) => [part, byId(`inside-${part}`)]);
+  inside ??= new Inside(Object.fromEntries(hosts), scaleOf());
+  showKnee();
+}
+
 function build() {
-  if (!inside) {
-    const hosts = ["leg", "slow", "loop", "flow"].map((part) => [part, byId(`inside-${part}`)]);
-    inside = new Inside(Object.fromEntries(hosts), scaleOf());
-  }
+  open();
   feel = new Feel(latest.hello.states);
   // Another connection does not know that this page listens.
   if (sound.isOn) tell({ listen: true });
@@ -59,6 +64,7 @@ function build() {
 export function startInside(bins) {
   window.crepitusSound = sound.stats;
   makeSoundControls(byId("sound"), sound, (isOn) => tell({ listen: isOn }));
+  byId("inside").addEventListener("toggle", open);
   on("hello", build);
   on("parameters", () => {
     sound.clear();

@@ -4,7 +4,6 @@ import { outcome } from "./answer-form.js";
 import { isReplay, isTeacher, on } from "./connection.js";
 import { byId, el, setText } from "./dom.js";
 import { kneeText, recordingTitle } from "./names.js";
-import { Player } from "./player.js";
 import { request } from "./report.js";
 import { number, onLanguage, text } from "./strings.js";
 import { onTab } from "./tabs.js";
@@ -26,6 +25,13 @@ function when(seconds) {
     : date.toLocaleString(document.documentElement.lang);
 }
 
+/** Shows what is open, by a player that is loaded with the first recording. */
+async function play() {
+  const { Player } = await import("./player.js");
+  player ??= new Player(view.player);
+  player.show(first, second);
+}
+
 async function open(file, asSecond) {
   const opened = await request("open", { recording: file.id });
   if (!opened) return;
@@ -35,14 +41,14 @@ async function open(file, asSecond) {
     if (second?.id === opened.id) second = null;
   }
   view.player.hidden = false;
-  player.show(first, second);
+  await play();
   showList();
   if (!asSecond) view.player.scrollIntoView({ block: "start" });
 }
 
 function close(file) {
   if (second?.id === file.id) second = null;
-  player.show(first, second);
+  play();
   showList();
 }
 
@@ -158,8 +164,8 @@ function build() {
     ),
     view.player,
   );
-  player = new Player(view.player);
-  if (wasOpen && first) player.show(first, second);
+  player = null;
+  if (wasOpen && first) play();
   showList();
 }
 
