@@ -12,6 +12,7 @@
 //! | lessons | `device_thread/lessons.rs`, `device_thread/resumed.rs` |
 //! | students who answer by phone | `device_thread/students.rs` |
 //! | recordings | `device_thread/recording.rs` |
+//! | frames of the curves, and what a blind trial hides of them | `device_thread/frames.rs` |
 //! | torques that pages play as sound | `device_thread/heard.rs` |
 //! | notes | `device_thread/notes.rs` |
 //! | the target of a hand, and its score | `device_thread/target.rs` |
@@ -20,6 +21,7 @@
 //! | status as a message | `device_thread/status.rs` |
 
 mod examination;
+mod frames;
 mod hand;
 mod heard;
 mod knee;
@@ -36,8 +38,7 @@ mod tests;
 mod torque_end;
 
 use crate::class::Class;
-use crate::frame::{Header, Kind, Masks, frame};
-use crate::live::{Envelope, Marks, Pace, Pain};
+use crate::live::{Envelope, Pace, Pain};
 use crate::request::Request;
 use crate::shared::{Latest, Order, Outcome, Shared};
 use axum::extract::ws::Utf8Bytes;
@@ -66,12 +67,6 @@ use torque_end::Torque;
 
 /// Samples of a bin, 5 ms.
 const ROWS_PER_BIN: u32 = TICKS_PER_S / 200;
-
-/// Interval of frames: 60 a second.
-const FRAME_EVERY: Duration = Duration::from_millis(16);
-
-/// Interval of frames without samples, which keep the watchdog fed.
-const BEAT_EVERY: Duration = Duration::from_millis(50);
 
 /// Interval of the status, and of a target's score.
 const STATUS_EVERY: Duration = Duration::from_millis(500);
@@ -384,49 +379,6 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         }
         if let Some(angle_rad) = self.hand.as_ref().and_then(Hand::angle_rad) {
             self.envelope.hold(angle_rad);
-        }
-    }
-
-    /// The newest bins, or none to be answered.
-    fn publish_frame(&mut self) {
-        let since = self.frame_at.elapsed();
-        if since < FRAME_EVERY {
-            return;
-        }
-        let (first, mut bins) = self.envelope.complete();
-        if bins.is_empty() && since < BEAT_EVERY {
-            return;
-        }
-        for bin in bins.iter_mut().filter(|bin| self.pain.is_felt(bin)) {
-            bin.marks.0 |= Marks::HURTS;
-        }
-        self.frame_at = Instant::now();
-        self.frame_number = self.frame_number.wrapping_add(1);
-        self.shared.watchdog.made(self.frame_number);
-        let bin_s = self.envelope.bin_s();
-        #[expect(clippy::cast_precision_loss, reason = "years of bins")]
-        let begin_s = first as f64 * bin_s;
-        let header = Header {
-            kind: Kind::Live,
-            number: self.frame_number,
-            unix_ms: unix_ms(),
-            begin_s,
-            bin_s,
-            missing: std::mem::take(&mut self.missing),
-            masks: self.masks(),
-        };
-        // Without a page nobody receives it.
-        let _ = self.shared.frames.send(frame(&header, &bins));
-        self.publish_samples();
-    }
-
-    /// Data that pages must not see: in a blind trial the knee.
-    fn masks(&self) -> Masks {
-        let held = self.lesson.as_ref();
-        let hidden = held.filter(|held| held.is_hidden(self.now_s));
-        Masks {
-            torque: hidden.is_some_and(|held| !held.shows_curves()),
-            states: hidden.is_some(),
         }
     }
 
