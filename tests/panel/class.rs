@@ -70,7 +70,8 @@ fn each_student_sees_the_own_answers_alone() {
         page.message("lesson")["answers"][0]["student"] == "Quokka"
     });
     assert!(page.message("lesson")["answers"][0]["disorder"].is_null());
-    page.ask("note", json!({ "text": "of the teacher" })).unwrap();
+    page.ask("note", json!({ "text": "of the teacher" }))
+        .unwrap();
     wombat.ask("answer", answer(1, "healthy")).unwrap();
     let numbat = json!({ "student": "Numbat", "disorder": "crepitus", "confidence": 1 });
     page.ask("lesson-answer", numbat).unwrap();
@@ -203,7 +204,8 @@ fn nobody_answers_for_another() {
     quokka.until("the old answer", |phone| {
         own(phone)["answers"][0]["disorder"] == "clonus"
     });
-    page.ask("free-seat", json!({ "student": "Quokka" })).unwrap();
+    page.ask("free-seat", json!({ "student": "Quokka" }))
+        .unwrap();
     quokka.until("the loss", |phone| phone.message("own").is_null());
     let error = quokka.ask("answer", answer(2, "clonus")).unwrap_err();
     assert!(error.contains("join the class first"), "{error}");

@@ -19,7 +19,10 @@ fn first_knee(sessions: &Path) -> String {
     let text = fs::read_to_string(folder.join("session.json")).unwrap();
     let session: Value = serde_json::from_str(&text).unwrap();
     let place = usize::try_from(session["order"][0].as_u64().unwrap()).unwrap();
-    session["knees"][place]["preset"].as_str().unwrap().to_owned()
+    session["knees"][place]["preset"]
+        .as_str()
+        .unwrap()
+        .to_owned()
 }
 
 #[test]

@@ -194,7 +194,9 @@ mod tests {
         }
         // A catch appears from a speed on.
         let presets = data["presets"].as_array().unwrap();
-        let catch = presets.iter().find(|preset| preset["name"] == "mas-1-catch");
+        let catch = presets
+            .iter()
+            .find(|preset| preset["name"] == "mas-1-catch");
         let sign = &catch.unwrap()["signs"][0];
         assert_eq!(sign["effect"], "spasticity");
         assert!(sign["appears_from_deg_s"].as_f64() > Some(30.0), "{sign}");

@@ -128,7 +128,10 @@ fn remarks_say_what_the_numbers_do_not() {
     }
     let remarks = Summary::of(&lesson).remarks;
     assert_eq!(remarks, ["about_kappa", "left_out", "few", "pooled"]);
-    let two = examined(&["healthy", "fine"], &[("healthy", None), ("crepitus", None)]);
+    let two = examined(
+        &["healthy", "fine"],
+        &[("healthy", None), ("crepitus", None)],
+    );
     assert_eq!(two.kappa.map(|kappa| kappa.low >= kappa.high), Some(true));
     let one = StudentScores {
         student: "A".to_owned(),
