@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
 import { after, afterEach, test } from "node:test";
-import { arm, endAll, endTest, folder, openControlling, openLive, startPanel, until, untilState } from "./harness.mjs";
+import { arm, endAll, endTest, folder, openControlling, openLive, startPanel, until } from "./harness.mjs";
 
 afterEach(endTest);
 after(endAll);

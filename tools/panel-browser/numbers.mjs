@@ -6,7 +6,7 @@
 
 import { readFileSync } from "node:fs";
 import { WebSocket } from "ws";
-import { arm, end, endAll, openControlling, startPanel, untilState } from "./harness.mjs";
+import { arm, end, endAll, openControlling, startPanel } from "./harness.mjs";
 
 const option = (name) => Number(process.argv[process.argv.indexOf(name) + 1] ?? 0) || 0;
 const minutes = option("--minutes");

@@ -5,7 +5,7 @@
 
 import { mkdirSync } from "node:fs";
 import { join, resolve } from "node:path";
-import { arm, endAll, folder, openControlling, startPanel, untilState } from "./harness.mjs";
+import { arm, endAll, folder, openControlling, startPanel } from "./harness.mjs";
 
 const isBook = process.argv[2] === "--book";
 const out = isBook ? join(import.meta.dirname, "../../docs/images") : resolve(process.argv[2] ?? "out/panel");

@@ -4,7 +4,7 @@ import { latest } from "./connection.js";
 import { levelName, presetText } from "./labels.js";
 import { text, textOr } from "./strings.js";
 
-export { levelName, presetText } from "./labels.js";
+export { levelName, presetText };
 
 /** All presets: those saved since the greeting replace its list. */
 export const presets = () => latest.presets ?? latest.hello?.presets ?? [];
@@ -13,7 +13,7 @@ export const presets = () => latest.presets ?? latest.hello?.presets ?? [];
 export const presetOf = (name) => presets().find((preset) => preset.name === name);
 
 /** The title of the preset with this name, or "healthy". */
-export function presetTitle(name) {
+function presetTitle(name) {
   if (name === "healthy") return text("knee.healthy");
   const preset = presetOf(name);
   return preset ? presetText(preset, "title") : name;

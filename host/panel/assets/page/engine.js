@@ -2,7 +2,7 @@
 // `sim/knee/src/page.rs`.
 
 /** Most steps at once. */
-export const ROOM = 2048;
+const ROOM = 2048;
 /** Steps a millisecond. */
 export const TICKS_A_MS = 20;
 
