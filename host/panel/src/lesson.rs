@@ -41,10 +41,10 @@ mod view;
 pub use finding::{Finding, Knee};
 pub(crate) use folder::trial_of;
 pub use folder::{FolderError, SessionFolder};
-pub(crate) use lesson::{check_pseudonym, is_same_name};
 pub use lesson::{
     Answer, BeginError, By, LEAST_TORQUE_SHARE, Lesson, LessonError, MOST_SEED, Note,
 };
+pub(crate) use lesson::{check_pseudonym, is_same_name};
 pub use own::{OwnAnswer, OwnView};
 pub use plan::{
     CheckedPlan, Feedback, Known, MOST_STUDENTS, MOST_TRIALS, Plan, PlanError, PlannedKnee,

@@ -80,7 +80,8 @@ impl<T: Transport> DeviceThread<'_, T> {
         }
         if *request == Request::Arm && order.stops != self.shared.stops.load(Ordering::Relaxed) {
             return Err(
-                "STOP was pressed meanwhile: look at the device, then turn the motor on again".to_owned(),
+                "STOP was pressed meanwhile: look at the device, then turn the motor on again"
+                    .to_owned(),
             );
         }
         let waited = order.queued_at.elapsed();

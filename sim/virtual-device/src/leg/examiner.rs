@@ -248,9 +248,8 @@ fn stretch_deg_s(sign: &Sign) -> f64 {
 /// A little to and fro, each time let go by as much as the resistance takes to build up.
 fn bit_by_bit(from_deg: f64, presliding_deg: f64) -> [Movement; 4] {
     let sense = if from_deg < MIDDLE_DEG { 1.0 } else { -1.0 };
-    let to = |deg: f64, deg_s: f64, rest_s: f64| {
-        Movement::new(from_deg + sense * deg, deg_s, rest_s)
-    };
+    let to =
+        |deg: f64, deg_s: f64, rest_s: f64| Movement::new(from_deg + sense * deg, deg_s, rest_s);
     [
         to(BIT_DEG, BACK_DEG_S, 0.0),
         to(BIT_DEG - presliding_deg, LET_GO_DEG_S, LET_GO_S),

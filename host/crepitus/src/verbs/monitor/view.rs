@@ -212,7 +212,11 @@ impl View {
     fn measured(&self) -> String {
         let measures = Measure::ALL.into_iter().filter_map(|measure| {
             let value = self.examination.measure(measure)?;
-            Some(format!("{} {}", measure.name(), shown(measure.spec(), value)))
+            Some(format!(
+                "{} {}",
+                measure.name(),
+                shown(measure.spec(), value)
+            ))
         });
         measures.collect::<Vec<_>>().join("   ")
     }

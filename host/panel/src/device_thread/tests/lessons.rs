@@ -79,7 +79,11 @@ fn a_class_that_answers_together_is_stored_once_and_then_confirmed() {
     let stored = || Session::read(&folder).unwrap().lesson.answers().len();
     device_thread.take_orders();
     assert_eq!(stored(), 0);
-    assert!(outcomes.iter_mut().all(|outcome| outcome.try_recv().is_err()));
+    assert!(
+        outcomes
+            .iter_mut()
+            .all(|outcome| outcome.try_recv().is_err())
+    );
     device_thread.store_answers();
     assert_eq!(stored(), pages.len());
     for mut outcome in outcomes {
