@@ -414,8 +414,14 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             Request::LessonClose => self.close_lesson(),
             Request::LessonResume { folder } => self.resume_lesson(&folder),
             Request::Severity { worse } => self.change_severity(worse),
-            Request::Class { open } => self.open_class(open),
-            Request::FreeSeat { student } => self.free_seat(&student),
+            Request::Class { open } => {
+                self.open_class(open);
+                Ok(Value::Null)
+            }
+            Request::FreeSeat { student } => {
+                self.free_seat(&student);
+                Ok(Value::Null)
+            }
             Request::Report { language } => self.report(&language),
             // Of the check of orders, the server and the archive.
             Request::Take

@@ -13,10 +13,9 @@ use std::collections::HashMap;
 
 impl<T: Transport> DeviceThread<'_, T> {
     /// Lets students join, or no more.
-    pub(super) fn open_class(&mut self, is_open: bool) -> Outcome {
+    pub(super) fn open_class(&mut self, is_open: bool) {
         self.class.open(is_open);
         self.publish_class();
-        Ok(Value::Null)
     }
 
     /// Gives a page the seat of a student.
@@ -32,13 +31,12 @@ impl<T: Transport> DeviceThread<'_, T> {
     }
 
     /// Takes a student's seat from its phone, at the teacher's wish.
-    pub(super) fn free_seat(&mut self, name: &str) -> Outcome {
+    pub(super) fn free_seat(&mut self, name: &str) {
         let lesson = self.lesson.as_ref().map(Held::lesson);
         let student = lesson.and_then(|lesson| lesson.student(name));
         self.class.free(student.unwrap_or(name), student.is_some());
         self.store_keys();
         self.publish_class();
-        Ok(Value::Null)
     }
 
     /// Takes the answer of the student who has joined on this page. It says which trial it is for: one that was sent

@@ -26,7 +26,7 @@ impl Pain {
         };
         let states = (0_u32..).zip(&STATES);
         let of_ends = states.filter(|(_, state)| state.effect == RANGE_LIMIT);
-        let middle_deg = (ends.extension_limit_deg + ends.flexion_limit_deg) / 2.0;
+        let middle_deg = f64::midpoint(ends.extension_limit_deg, ends.flexion_limit_deg);
         #[expect(clippy::cast_possible_truncation, reason = "a drawn angle")]
         let middle_rad = middle_deg.to_radians() as f32;
         Self {

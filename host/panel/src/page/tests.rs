@@ -15,18 +15,24 @@ fn inside<'p>(page: &'p str, begin: &str, end: &str) -> &'p str {
     rest.split_once(end).unwrap().0
 }
 
+fn is_of(name: &str, extension: &str) -> bool {
+    Path::new(name)
+        .extension()
+        .is_some_and(|it| it == extension)
+}
+
 #[test]
 fn every_file_of_the_page_is_in_it_and_it_is_light() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/page");
     let files = std::fs::read_dir(folder).unwrap();
     let found: BTreeSet<_> = files
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .filter(|name| name != "knee.html" && !name.ends_with(".json"))
+        .filter(|name| name != "knee.html" && !is_of(name, "json"))
         .map(|name| format!("page/{name}"))
         .collect();
     let known: BTreeSet<_> = FILES.iter().map(|(name, _)| (*name).to_owned()).collect();
     assert_eq!(found, known);
-    for (name, _) in FILES.iter().filter(|(name, _)| name.ends_with(".js")) {
+    for (name, _) in FILES.iter().filter(|(name, _)| is_of(name, "js")) {
         let import = name.replacen("page/", "\"./", 1) + "\";";
         let is_used = FILES.iter().any(|(_, text)| text.contains(&import));
         assert!(is_used || *name == ENTRY, "{name} is not used");

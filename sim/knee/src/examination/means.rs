@@ -12,7 +12,7 @@ pub(super) struct Means {
     /// The mean at hand; none before the first sample.
     open: Option<Open>,
     /// Oldest first.
-    means_rad: [f64; 4],
+    last_rad: [f64; 4],
     /// Means since the last pause.
     count: u32,
 }
@@ -68,16 +68,16 @@ impl Means {
         let ended = open.integral + 0.5 * (last_rad + end_rad) * (open.end_s - last_s);
         open.integral = 0.5 * (end_rad + angle_rad) * (time_s - open.end_s);
         open.end_s += MEAN_S;
-        let [_, a, b, c] = self.means_rad;
+        let [_, a, b, c] = self.last_rad;
         let d = ended / MEAN_S;
-        self.means_rad = [a, b, c, d];
+        self.last_rad = [a, b, c, d];
         self.count = self.count.saturating_add(1);
         let travel_rad = if self.count > 1 { d - c } else { 0.0 };
         Some(Motion {
             time_s,
             angle_rad,
             speed_rad_s: travel_rad / MEAN_S,
-            jerk: (self.count > 3).then(|| jerk_of(self.means_rad)),
+            jerk: (self.count > 3).then(|| jerk_of(self.last_rad)),
         })
     }
 }

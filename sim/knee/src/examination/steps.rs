@@ -49,8 +49,8 @@ const FALL_FROM_DEG: f64 = 50.0;
 /// Ticks of the steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Steps {
-    slow_flexion: bool,
-    slow_extension: bool,
+    /// Slow to the end: extension, flexion.
+    slow: [bool; 2],
     fast: bool,
     hold: bool,
     drop: bool,
@@ -73,7 +73,7 @@ impl Steps {
     /// Returns whether a step was done.
     pub(super) fn has(&self, step: Step) -> bool {
         match step {
-            Step::Slow => self.slow_flexion && self.slow_extension,
+            Step::Slow => self.slow == [true; 2],
             Step::Fast => self.fast,
             Step::Hold => self.hold,
             Step::Drop => self.drop,
@@ -90,8 +90,8 @@ impl Steps {
         let is_flexion = stroke.sense() > 0.0;
         let travel_rad = (stroke.to_rad - stroke.from_rad).abs();
         if travel_rad >= SLOW_TRAVEL_RAD && stroke.speed_rad_s < FAST_RAD_S {
-            self.slow_flexion |= is_flexion;
-            self.slow_extension |= !is_flexion;
+            let [extension, flexion] = &mut self.slow;
+            *(if is_flexion { flexion } else { extension }) = true;
         }
         let falls = FALL_DEG_S.contains(&stroke.speed_rad_s.to_degrees());
         let is_straight = stroke.from_rad.to_degrees() <= FALL_FROM_DEG;

@@ -6,23 +6,23 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 /// Input of a hand, which the leg looks at once a tick, and what the leg reports. All clones are one input, for any
 /// thread: each number stands for itself, so none waits for another.
 #[derive(Clone, Debug)]
-pub struct HandInput(Arc<Numbers>);
+pub struct HandInput(Arc<Angles>);
 
-/// Numbers as their bits; NaN is none.
+/// Angles, rad, as their bits; NaN is none.
 #[derive(Debug)]
-struct Numbers {
-    target_rad: AtomicU64,
-    hand_rad: AtomicU64,
-    shaft_rad: AtomicU64,
+struct Angles {
+    target: AtomicU64,
+    hand: AtomicU64,
+    shaft: AtomicU64,
 }
 
 impl Default for HandInput {
     fn default() -> Self {
         let none = || AtomicU64::new(f64::NAN.to_bits());
-        Self(Arc::new(Numbers {
-            target_rad: none(),
-            hand_rad: none(),
-            shaft_rad: AtomicU64::new(0),
+        Self(Arc::new(Angles {
+            target: none(),
+            hand: none(),
+            shaft: AtomicU64::new(0),
         }))
     }
 }
@@ -32,34 +32,34 @@ impl HandInput {
     /// is ignored.
     pub fn aim(&self, angle_rad: f64) {
         if angle_rad.is_finite() {
-            store(&self.0.target_rad, angle_rad);
+            store(&self.0.target, angle_rad);
         }
     }
 
     /// Lets go of the leg: the scene's motion goes on.
     pub fn release(&self) {
-        store(&self.0.target_rad, f64::NAN);
+        store(&self.0.target, f64::NAN);
     }
 
     /// Angle of the hand, rad, on its way to where it moves; `None` while it does not have the leg.
     pub fn hand_rad(&self) -> Option<f64> {
-        load(&self.0.hand_rad)
+        load(&self.0.hand)
     }
 
     /// Angle of the shaft that the encoder counts, rad.
     pub fn shaft_rad(&self) -> f64 {
-        load(&self.0.shaft_rad).unwrap_or_default()
+        load(&self.0.shaft).unwrap_or_default()
     }
 
     /// Angle to which the hand moves, rad; `None` where it does not hold the leg.
     pub(super) fn target_rad(&self) -> Option<f64> {
-        load(&self.0.target_rad)
+        load(&self.0.target)
     }
 
     /// Reports a tick of the leg.
     pub(super) fn report(&self, hand_rad: Option<f64>, shaft_rad: f64) {
-        store(&self.0.hand_rad, hand_rad.unwrap_or(f64::NAN));
-        store(&self.0.shaft_rad, shaft_rad);
+        store(&self.0.hand, hand_rad.unwrap_or(f64::NAN));
+        store(&self.0.shaft, shaft_rad);
     }
 }
 

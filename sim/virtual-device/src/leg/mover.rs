@@ -50,13 +50,12 @@ impl Mover {
     /// The mover of a scene's leg, in steps of `step_s`.
     pub(super) fn new(scene: &Scene, step_s: f64) -> Self {
         let mut examiner = Examiner::of(scene);
-        let (stage, motion) = match LeadIn::of(scene) {
-            Some(lead_in) => (Stage::Led(lead_in), Motion::rest(0.0)),
-            None => {
-                let examined = examiner.as_mut().map(Examiner::begin);
-                let motion = examined.unwrap_or_else(|| scene.endless_motion());
-                (Stage::Moved, motion)
-            }
+        let (stage, motion) = if let Some(lead_in) = LeadIn::of(scene) {
+            (Stage::Led(lead_in), Motion::rest(0.0))
+        } else {
+            let examined = examiner.as_mut().map(Examiner::begin);
+            let motion = examined.unwrap_or_else(|| scene.endless_motion());
+            (Stage::Moved, motion)
         };
         Self {
             scene: scene.clone(),
