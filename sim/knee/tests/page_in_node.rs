@@ -78,13 +78,14 @@ fn knees() -> Vec<Knee> {
     knees
 }
 
-/// A hand that bends the knee to 120° and back in a second: the ticks of each frame, and its target, rad.
+/// A hand that bends the knee to 120° and back, and is straight from 0.8 s to the end: the ticks of each frame, and
+/// its target, rad.
 fn motion() -> Vec<(u32, f32)> {
     let mut begun = 0;
     let mut frames = Vec::new();
     for frame in FRAMES.into_iter().cycle() {
         let ticks = frame.min(TICKS - begun);
-        let turns = f64::from(begun) / f64::from(TICKS);
+        let turns = (f64::from(begun) / (0.8 * f64::from(TICKS))).min(1.0);
         let deg = 60.0 * (1.0 - (std::f64::consts::TAU * turns).cos());
         #[expect(clippy::cast_possible_truncation, reason = "as a page has it")]
         frames.push((ticks, deg.to_radians() as f32));

@@ -1,13 +1,13 @@
 //! Beats of clonus: torque that comes and goes while the leg is held.
 //!
-//! A beat is a torque of 0.4 N·m or more that falls below a third of its height. Those of one train follow
-//! each other within 80 to 400 ms, and the leg moves by less than 5° from one to the next: the
+//! A beat is a torque that rises to 0.4 N·m or more from less than a third of its height, and falls below a third
+//! of it again. Those of one train follow each other within 80 to 400 ms, and the leg moves by less than 5° from one to the next: the
 //! teeth of a cogwheel do not fall so low, and need a moving leg.
 //!
 //! Sources: 5 to 8 Hz, 3.8 to 5.8 under load (see the law of clonus in the model); SCATS counts how long
 //! it lasts (Benz et al., Arch Phys Med Rehabil 86:52–59, 2005). Limits are estimates.
 
-/// Least height, N·m, and the share of it below which a beat is over.
+/// Least height, N·m, and the share of it from which a beat rises, and below which it is over.
 const HEIGHT_NM: f64 = 0.4;
 const OVER_SHARE: f64 = 1.0 / 3.0;
 
@@ -50,6 +50,8 @@ struct Peak {
 pub(super) struct Beats {
     /// The beat under way.
     open: Option<Peak>,
+    /// Least torque since the last beat, N·m.
+    least_nm: f64,
     train: Train,
     longest: Train,
 }
@@ -63,6 +65,7 @@ impl Beats {
     /// Samples are missing.
     pub(super) fn pause(&mut self) {
         self.open = None;
+        self.least_nm = 0.0;
         self.train = Train::default();
     }
 
@@ -75,13 +78,15 @@ impl Beats {
             nm,
         };
         match self.open {
-            None if nm >= HEIGHT_NM => self.open = Some(now),
+            None if nm >= HEIGHT_NM && OVER_SHARE * nm > self.least_nm => self.open = Some(now),
+            None => self.least_nm = self.least_nm.min(nm),
             Some(peak) if nm > peak.nm => self.open = Some(now),
             Some(peak) if nm < OVER_SHARE * peak.nm => {
                 self.open = None;
+                self.least_nm = nm;
                 self.add(peak);
             }
-            None | Some(_) => {}
+            Some(_) => {}
         }
     }
 

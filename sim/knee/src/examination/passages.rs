@@ -151,14 +151,15 @@ impl Passages {
         let part = |share: f64| share * travel_rad;
         let middle_s = self.reached_s(part(0.75))? - self.reached_s(part(0.25))?;
         let speed_rad_s = part(0.5) / middle_s;
-        let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
+        // Means over time: ∫v dt is the way, and ∫v² dt the sum of way times speed.
+        let (mut seconds, mut way_rad, mut squares) = (0.0, 0.0, 0.0);
         for speed in self.speeds(part(0.25), part(0.75)) {
-            count += 1.0;
-            sum += speed;
-            squares += speed * speed;
+            seconds += self.width_rad / speed;
+            way_rad += self.width_rad;
+            squares += self.width_rad * speed;
         }
-        let mean = sum / count;
-        let deviation = libm::sqrt((squares / count - mean * mean).max(0.0));
+        let mean = way_rad / seconds;
+        let deviation = libm::sqrt((squares / seconds - mean * mean).max(0.0));
         speed_rad_s.is_finite().then(|| Shape {
             speed_rad_s,
             unsteadiness: deviation / mean,

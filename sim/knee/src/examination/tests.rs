@@ -76,11 +76,13 @@ fn shape(stroke: &[Sample]) -> [f64; 3] {
     let at = |share: f64| stroke.partition_point(|s| (s[1] - first[1]) / travel < share);
     let time = |share: f64| stroke[at(share)][0];
     let speed = 0.5 * travel.abs() / (time(0.75) - time(0.25));
-    // Evenly over the travel, as cells are.
-    let parts = (0..200).map(|n| 0.25 + 0.5 * (f64::from(n) + 0.5) / 200.0);
-    let speeds: Vec<f64> = parts.map(|share| stroke[at(share)][2].abs()).collect();
-    let mean = speeds.iter().sum::<f64>() / 200.0;
-    let variance = speeds.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / 200.0;
+    let middle = &stroke[at(0.25)..at(0.75)];
+    let mean_of = |value: &dyn Fn(f64) -> f64| {
+        let sum: f64 = middle.iter().map(|s| value(s[2].abs())).sum();
+        sum / f64::from(u32::try_from(middle.len()).unwrap())
+    };
+    let mean = mean_of(&|v| v);
+    let variance = mean_of(&|v| (v - mean) * (v - mean));
     let [from, to] = [at(0.05), at(0.95)];
     // Over 2 ms.
     let jerk = |i: usize| {

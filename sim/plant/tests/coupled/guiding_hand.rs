@@ -151,7 +151,7 @@ fn a_hand_that_is_held_still_is_passive() {
     let mut given_j = 0.0;
     for n in 0..60_000_u32 {
         // Up to 40 N·m, beyond the limit, with jumps.
-        let torque_nm = f64::from(n * 7_919 / 50 % 81) - 40.0;
+        let torque_nm = f64::from(n / 50 * 7_919 % 81) - 40.0;
         let before_rad = rig.leg().angle_rad;
         rig.tick(torque_nm);
         // Work of the device on hand and arm.
