@@ -261,4 +261,37 @@ mod tests {
         turned(&mut pipeline, 8_080, 100);
         assert!(pipeline.joint().is_none() && !pipeline.is_settling());
     }
+
+    #[test]
+    fn a_commit_that_waits_is_dropped_where_it_needs_a_disarmed_device() {
+        let (mut one, mut other) = (settled(&healthy()), settled(&healthy()));
+        let joint = with_static(0.4);
+        let mut lines = joint;
+        lines.set(id::LINES, 1_000.0);
+        one.commit(&joint).unwrap();
+        other.commit(&joint).unwrap();
+        // It waits for the joint, disarmed still.
+        one.commit(&lines).unwrap();
+        let torques = turned(&mut one, 0, 8_000);
+        assert_eq!(torques, turned(&mut other, 0, 8_000));
+        assert!(torques.iter().any(|torque| torque[0] != 0));
+    }
+
+    #[test]
+    fn the_zero_is_the_count_at_which_it_begins() {
+        let limited = with(&[("range-limit.render", 1.0)]);
+        let torques = |begin: u32| -> Vec<u32> {
+            let mut pipeline = Pipeline::new(begin).unwrap();
+            pipeline.commit(&limited).unwrap();
+            for _ in 0..2_000 {
+                pipeline.tick(begin, false);
+            }
+            // To 163°, beyond the end of the range.
+            let rendered = (0..20_000).map(|n| pipeline.tick(begin + 4 * n, true));
+            rendered.map(|tick| tick.torque_nm.to_bits()).collect()
+        };
+        let expected = torques(0);
+        assert!(expected.iter().any(|torque| *torque != 0));
+        assert_eq!(torques(100_000), expected);
+    }
 }

@@ -178,4 +178,33 @@ mod tests {
         let slowly = |deg: f64, _: f64| 2.0 * deg / 100.0;
         assert_eq!(caught(200.0, slowly), None);
     }
+
+    /// R1 is that of the fastest stretch, whichever came last.
+    #[test]
+    fn of_several_catches_that_of_the_fastest_stretch_counts() {
+        let mut catches = Catches::default();
+        let mut begin_s = 0.0;
+        for (deg_s, at_deg) in [(120.0_f64, 70.0), (200.0, 50.0), (150.0, 60.0)] {
+            catches.turn();
+            for tick in 0..20_000 {
+                let passed_s = f64::from(tick) * 5e-5;
+                let deg = deg_s * passed_s;
+                if deg > 100.0 {
+                    break;
+                }
+                catches.take(&Felt {
+                    time_s: begin_s + passed_s,
+                    angle_rad: deg.to_radians(),
+                    sense: 1.0,
+                    along_rad: deg.to_radians(),
+                    speed_rad_s: deg_s.to_radians(),
+                    resistance_nm: ((deg - at_deg) / 2.0).clamp(0.0, 1.0),
+                });
+            }
+            begin_s += 1.0;
+        }
+        // Of the second: 0.25 N·m are half a degree.
+        let found = catches.found().unwrap().angle_rad.to_degrees();
+        assert!((found - 50.5).abs() < 0.1, "{found}");
+    }
 }

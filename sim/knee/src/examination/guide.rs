@@ -323,6 +323,37 @@ mod tests {
         assert_eq!(of([75.0, 60.0, 1.0]), "too-slow");
         assert_eq!(of([50.0, 200.0, 1.0]), "too-short");
         assert_eq!(of([65.0, 200.0, 0.0]), "not-held");
+        // Fast to 50°, and slowly past 60°.
+        let elsewhere = outcome(&effects, &[[50.0, 200.0, 0.0], [75.0, 30.0, 1.0]]);
+        assert_eq!(elsewhere.name(), "not-there");
+    }
+
+    /// 5° of return stop clonus; 3° do not.
+    #[test]
+    fn a_return_within_the_hysteresis_is_still_a_hold() {
+        let effects = EffectSettings {
+            clonus: Some(ClonusSettings::default()),
+            ..EffectSettings::default()
+        };
+        let held = |back_deg: f64| {
+            let mut guide = Guide::new(&effects, false);
+            for (time_s, deg, deg_s) in [
+                (0.0, 10.0, 0.0),
+                (0.3, 65.0, 200.0),
+                (0.35, 65.0, 0.0),
+                (0.4, 60.0 - back_deg, 0.0),
+                (1.2, 60.0 - back_deg, 0.0),
+            ] {
+                guide.take(&LegSample {
+                    time_s,
+                    angle_rad: f64::to_radians(deg),
+                    omega_rad_s: f64::to_radians(deg_s),
+                    torque_nm: 0.0,
+                });
+            }
+            guide.findings().last().unwrap().outcome.name()
+        };
+        assert_eq!((held(3.0), held(6.0)), ("shown", "not-held"));
     }
 
     #[test]

@@ -336,4 +336,22 @@ mod tests {
         let wheel = found.iter().find(|sign| sign.effect == "cogwheel").unwrap();
         assert!((wheel.appears_from_deg_s() - 11.25).abs() < 1e-9);
     }
+
+    #[test]
+    fn a_clasp_knife_collapses_where_its_trigger_says() {
+        let of = |trigger| {
+            let blade = ClaspKnifeSettings {
+                trigger,
+                ..ClaspKnifeSettings::default()
+            };
+            let effects = EffectSettings {
+                clasp_knife: Some(blade),
+                ..EffectSettings::default()
+            };
+            sign(effects).rule
+        };
+        assert_eq!(of(0), Rule::Reach { angle_deg: 75.0 });
+        // By torque: somewhere behind its onset.
+        assert_eq!(of(1), Rule::Reach { angle_deg: 30.0 });
+    }
 }

@@ -270,7 +270,8 @@ mod tests {
         let found = strokes(4.0, stopped);
         assert_eq!(found.len(), 1);
         assert!((found[0].speed_rad_s.to_degrees() - 15.0).abs() < 0.1);
-        assert!((found[0].unsteadiness - 1.0).abs() < 0.05, "{}", found[0].unsteadiness);
+        let unsteadiness = found[0].unsteadiness;
+        assert!((unsteadiness - 1.0).abs() < 0.05, "{unsteadiness}");
     }
 
     #[test]

@@ -327,3 +327,34 @@ fn a_fall_that_is_caught_is_a_drop() {
     assert!(falls(10.0, 150.0));
     assert!(!falls(10.0, 60.0) && !falls(10.0, 250.0) && !falls(60.0, 150.0));
 }
+
+#[test]
+fn a_leg_that_is_moved_on_is_not_held() {
+    // Back at once, at a speed that alone ends no hold.
+    let samples = moved(10.0, &[(100.0, 200.0, 0.0), (10.0, 60.0, 0.3)]);
+    let examination = examined(&samples);
+    assert!(examination.has_done(Step::Fast) && !examination.has_done(Step::Hold));
+}
+
+/// That of flexors, which are stretched in extension.
+#[test]
+fn a_catch_in_extension_is_compared_with_the_slow_end_there() {
+    let mut samples = moved(
+        110.0,
+        &[
+            (10.0, 35.0, 0.3),
+            (110.0, 60.0, 0.3),
+            (5.0, 200.0, 0.3),
+            (110.0, 60.0, 0.2),
+        ],
+    );
+    against(&mut samples, |[_, angle_rad, omega_rad_s, _]| {
+        let is_caught = *omega_rad_s < -1.5 && *angle_rad < 60_f64.to_radians();
+        -f64::from(u8::from(is_caught))
+    });
+    let examination = examined(&samples);
+    is_near(&examination, Measure::Catch, 60.0, 2.5);
+    is_near(&examination, Measure::SlowEnd, 10.0, 0.1);
+    let found_deg = examination.measure(Measure::Catch).unwrap();
+    is_near(&examination, Measure::Dynamic, found_deg - 10.0, 0.1);
+}

@@ -52,6 +52,21 @@ fn a_hand_takes_a_moving_leg_without_a_jump_and_moves_it() {
     }
 }
 
+#[test]
+fn a_hand_takes_a_moving_leg_with_its_speed() {
+    let mut leg = leg(STROKES, &[]);
+    let hand = leg.hand();
+    ticks(&mut leg, 20_000);
+    let before = leg.leg();
+    hand.aim(before.angle_rad);
+    ticks(&mut leg, 1);
+    let taken_rad = hand.hand_rad().expect("it has the leg");
+    ticks(&mut leg, 1);
+    let moved_rad = hand.hand_rad().expect("it has the leg") - taken_rad;
+    let share = moved_rad / (TICK_S * before.omega_rad_s);
+    assert!((share - 1.0).abs() < 0.1, "{share}");
+}
+
 /// 1 V on the winding at rest is 2.7 N·m.
 #[test]
 fn what_resists_is_seen_as_a_lag() {
