@@ -4,7 +4,8 @@ import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { endAll, openControlling, openLive, problemsOf, startPanel, until, untilState } from "./harness.mjs";
 
-const WIDTHS = [390, 1280, 3840];
+// Widths in px, and how many times the size; 1280 px at 200 % are 640 px of twice the size.
+const SIZES = [[320, 1], [390, 1], [1280, 1], [1920, 1], [3840, 1], [640, 2]];
 let panel;
 
 before(async () => {
@@ -12,22 +13,24 @@ before(async () => {
 });
 after(endAll);
 
-for (const colorScheme of ["light", "dark"]) {
-  for (const width of WIDTHS) {
-    test(`axe finds nothing: ${width} px, ${colorScheme}`, async () => {
-      const viewport = { width, height: width > 2000 ? 2160 : 844 };
-      const page = await openControlling(panel.teacher, { viewport, colorScheme, reducedMotion: "reduce" });
-      await page.locator("#inside > summary").click();
-      for (const tab of ["Live", "Knee", "Lesson", "Recordings"]) {
-        const button = page.getByRole("tab", { name: tab });
-        // Beside the other parts, live has no tab.
-        if (await button.isVisible()) await button.click();
-        if (tab === "Knee") await page.getByText("All parameters").click();
-        assert.deepEqual(await problemsOf(page), [], tab);
+for (const [width, scale] of SIZES) {
+  test(`axe finds nothing: ${width} px, ${100 * scale} %, light and dark`, async () => {
+    const viewport = { width, height: width > 2000 ? 2160 : 844 };
+    const options = { viewport, deviceScaleFactor: scale, reducedMotion: "reduce" };
+    const page = await openControlling(panel.teacher, options);
+    await page.locator("#inside > summary").click();
+    for (const tab of ["Live", "Knee", "Lesson", "Recordings"]) {
+      const button = page.getByRole("tab", { name: tab });
+      // Beside the other parts, live has no tab.
+      if (await button.isVisible()) await button.click();
+      if (tab === "Knee") await page.getByText("All parameters").click();
+      for (const colorScheme of ["light", "dark"]) {
+        await page.emulateMedia({ colorScheme });
+        assert.deepEqual(await problemsOf(page), [], `${tab}, ${colorScheme}`);
       }
-      await page.context().close();
-    });
-  }
+    }
+    await page.context().close();
+  });
 }
 
 test("everything can be done without a mouse", async () => {

@@ -8,15 +8,12 @@ import {
   arm, endAll, endTest, folder, openControlling, openLive, quickest, startDevice, startPanel, until,
   untilState,
 } from "./harness.mjs";
+import { angleOf, at, delaysOf, grab, sweep, watchDelays } from "./pointer.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
 afterEach(endTest);
 after(endAll);
-
-/** The angle that the page shows, °. */
-const shown = () => Number(document.getElementById("angle").textContent.replace("−", "-"));
-const angleOf = (page) => page.evaluate(shown);
 
 /** Waits until the leg shows an angle; numbers are renewed five times a second. */
 const untilAngle = (page, from, to) =>
@@ -29,32 +26,6 @@ const untilAngle = (page, from, to) =>
     },
     [from, to],
   );
-
-/** The place on the screen at an angle about the knee, °, seen from the side. */
-async function at(page, deg) {
-  const { x, y, width, height } = await page.locator("#leg svg").boundingBox();
-  const [knee, reach] = [{ x: x + (width * 150) / 300, y: y + (height * 62) / 212 }, width * 0.3];
-  const rad = (deg * Math.PI) / 180;
-  return [knee.x + reach * Math.cos(rad), knee.y + reach * Math.sin(rad)];
-}
-
-/** Grabs the leg at this place; returns its angle once it rests in the hand. */
-async function grab(page, deg) {
-  await page.mouse.move(...(await at(page, deg)));
-  await page.mouse.down();
-  await page.locator("#hand-release").waitFor();
-  await page.waitForTimeout(700);
-  return angleOf(page);
-}
-
-/** Moves the pointer from one angle to another, at 75 °/s at most. */
-async function sweep(page, from, to) {
-  const steps = Math.ceil(Math.abs(to - from) / 1.5);
-  for (let nth = 1; nth <= steps; nth++) {
-    await page.mouse.move(...(await at(page, from + ((to - from) * nth) / steps)));
-    await page.waitForTimeout(20);
-  }
-}
 
 /** Watches the outline of the hand from now on: `window.apart` is how far it was from the leg at most, °. */
 const watchGhost = (page) =>
@@ -191,32 +162,10 @@ test("from the pointer to the picture", async () => {
   const panel = await startPanel();
   const page = await openControlling(panel.teacher);
   await grab(page, 40);
-  await page.evaluate(() => {
-    window.delays = [];
-    const leg = document.querySelector("#leg g");
-    const turn = () => Number(/rotate\((-?[\d.]+)/.exec(leg.getAttribute("transform"))[1]);
-    document.getElementById("leg").addEventListener(
-      "pointermove",
-      ({ timeStamp }) => {
-        const before = turn();
-        const look = () => {
-          const delay = performance.now() - timeStamp;
-          if (Math.abs(turn() - before) >= 0.3) window.delays.push(delay);
-          else if (delay < 500) requestAnimationFrame(look);
-        };
-        requestAnimationFrame(look);
-      },
-      { capture: true },
-    );
-  });
+  await watchDelays(page);
   // The gate shares its cores: 60 ms are aimed at.
   const took = await quickest(100, async () => {
-    await page.evaluate(() => (window.delays.length = 0));
-    for (let nth = 0; nth < 15; nth++) {
-      await page.mouse.move(...(await at(page, nth % 2 ? 40 : 60)));
-      await page.waitForTimeout(600);
-    }
-    const delays = await page.evaluate(() => window.delays.sort((a, b) => a - b));
+    const delays = await delaysOf(page, 15);
     assert.ok(delays.length >= 12, `${delays.length} of 15 moves are seen`);
     return delays[Math.floor(delays.length / 2)];
   });
