@@ -1,6 +1,7 @@
 //! `crepitus panel`: the trainer's page.
 
 mod browser;
+mod lan;
 mod program;
 
 use crate::cli::DeviceArguments;
@@ -13,11 +14,11 @@ use crepitus_client::Client;
 use crepitus_files::output::temporary_in;
 use crepitus_panel::{Links, Panel, Settings, Source};
 use crepitus_recording::{Damage, Recording};
+use lan::Lan;
 use program::ThisProgram;
 use serde_json::json;
 use std::fs;
 use std::io::{IsTerminal, stdout};
-use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 
 /// Open the trainer's panel: a page to choose a knee, see what the hand does, and hold lessons.
@@ -29,7 +30,7 @@ Examples:
   crepitus panel --or-sim                       # simulated without a brace
   crepitus panel --sessions my-lessons          # lessons are stored there
   crepitus panel --replay monday.parquet --replay tuesday.parquet
-  crepitus panel --lan 192.168.1.20 --no-open   # for others, with TLS
+  crepitus panel --lan auto                     # for a class, with TLS
 
 The page is served to this computer alone, under a link with a secret; a second link is for looking on. \
 One page has control and may turn the motor on; every page may stop. If the controlling page is closed or \
@@ -55,9 +56,9 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with_all = ["device", "replay"])]
     or_sim: bool,
 
-    /// Serve it to the network under this address of this computer, with TLS.
+    /// Serve it to the network, with TLS, under this address of this computer; auto finds it.
     #[arg(long, value_name = "ADDRESS")]
-    lan: Option<IpAddr>,
+    lan: Option<Lan>,
 
     /// Do not open a browser.
     #[arg(long)]
@@ -77,7 +78,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     let settings = Settings {
         port: arguments.port,
-        lan: arguments.lan,
+        lan: arguments.lan.map(Lan::address).transpose()?,
         sessions: arguments.sessions.clone(),
         recordings: arguments.replay.clone(),
     };
