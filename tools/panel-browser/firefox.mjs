@@ -1,7 +1,8 @@
 // Firefox as it is installed, by WebDriver BiDi: enough to open a page and to look at it.
 
 import { spawn } from "node:child_process";
-import { existsSync } from "node:fs";
+import { existsSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { WebSocket } from "ws";
 
 const PLACES = [process.env.FIREFOX, "/usr/bin/firefox", "/usr/bin/firefox-esr"];
@@ -9,8 +10,18 @@ const PLACES = [process.env.FIREFOX, "/usr/bin/firefox", "/usr/bin/firefox-esr"]
 /** Where it is, or undefined. */
 export const FIREFOX = PLACES.find((place) => place && existsSync(place));
 
+/** Without a network: all goes to a proxy at a port where nobody listens. */
+const OFFLINE = [
+  ["network.proxy.type", 1],
+  ["network.proxy.socks", "127.0.0.1"],
+  ["network.proxy.socks_port", 9],
+  ["network.proxy.socks_remote_dns", true],
+];
+
 /** Opens a page with a new profile in this folder; `look` is called with a function that evaluates an expression. */
 export async function inFirefox(link, profile, look) {
+  const lines = OFFLINE.map(([name, value]) => `user_pref("${name}", ${JSON.stringify(value)});\n`);
+  writeFileSync(join(profile, "user.js"), lines.join(""));
   const args = ["--headless", "--no-remote", "--profile", profile, "--remote-debugging-port", "0", "about:blank"];
   const child = spawn(FIREFOX, args, { stdio: ["ignore", "ignore", "pipe"] });
   try {
