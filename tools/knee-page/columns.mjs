@@ -4,7 +4,7 @@
 //
 // A run is a line of standard input: [ids, values, ticks, angles], parameters and frames of a hand. Each has a
 // knee of its own; of each frame every column is written as it lies in memory, at the end the measures of the
-// examination and its steps.
+// examination, its steps, the number of its findings and their columns.
 
 import { readFileSync } from "node:fs";
 
@@ -18,6 +18,8 @@ const COLUMNS = [
   "states",
   "phase",
 ];
+
+const FINDINGS = ["outcomes", "reached", "needed"];
 
 /** The number of measures. */
 const MEASURES = Number(process.argv[3]);
@@ -38,9 +40,11 @@ function columnsOf(module, [ids, values, ticks, angles]) {
     return Buffer.concat(COLUMNS.map(column));
   });
   const measures = Buffer.from(knee.memory.buffer, knee.examination(), 4 * MEASURES);
-  const steps = Buffer.alloc(4);
-  steps.writeInt32LE(knee.steps());
-  return Buffer.concat([...frames, measures, steps]);
+  const numbers = Buffer.alloc(8);
+  numbers.writeInt32LE(knee.steps(), 0);
+  numbers.writeInt32LE(knee.findings(), 4);
+  const findings = FINDINGS.map((name) => Buffer.from(knee.memory.buffer, knee[name](), 4 * knee.findings()));
+  return Buffer.concat([...frames, measures, numbers, ...findings]);
 }
 
 const module = new WebAssembly.Module(readFileSync(process.argv[2]));

@@ -14,7 +14,11 @@ export const MARK = {
   hurts: 256,
 };
 
-const HEADER = 40;
+/** Bytes of a frame before its bins or samples. */
+export const HEADER = 40;
+/** Bins of the live view. */
+export const BINS_A_SECOND = 200;
+
 const DEGREES = 180 / Math.PI;
 const VALUES = [
   "torqueLow",
@@ -65,6 +69,9 @@ export function decodeTrace(view) {
   return { columns, begin: 0, end: decode(view, columns, 0), length: view.getFloat64(24, true) };
 }
 
+/** The torques of a frame of samples, N·m. */
+export const torquesOf = (view) => new Float32Array(view.buffer, HEADER, view.getUint16(2, true));
+
 /** The last seconds of the live bins; always one piece of each column. */
 export class RecentBins {
   constructor(room) {
@@ -77,7 +84,7 @@ export class RecentBins {
     this.begin = 0;
     this.end = 0;
     this.arrived = 0;
-    this.length = 0.005;
+    this.length = 1 / BINS_A_SECOND;
     this.masked = { torque: false, states: false };
   }
 

@@ -1,6 +1,7 @@
 // The one WebSocket to the server: token, requests and their replies, live
 // frames. Everything else of the page listens here.
 
+import { HEADER } from "./bins.js";
 import { storedToken, storeToken } from "./storage.js";
 
 const VERSION = 2;
@@ -72,7 +73,7 @@ function settle(id, outcome, value) {
 // the server disarms when answers stay out.
 function receiveFrame(data) {
   const view = new DataView(data);
-  if (data.byteLength < 40 || view.getUint8(0) !== VERSION) return;
+  if (data.byteLength < HEADER || view.getUint8(0) !== VERSION) return;
   const id = view.getUint32(4, true);
   if (view.getUint8(1) === KIND_TRACE) return settle(id, "resolve", view);
   if (view.getUint8(1) === KIND_SAMPLES) return emit("samples", view);

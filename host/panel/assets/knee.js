@@ -5,14 +5,11 @@ import { latest, on } from "./connection.js";
 import { controlReason } from "./control.js";
 import { byId, el, freshId, setText } from "./dom.js";
 import { buildDrawer, updateDrawer } from "./drawer.js";
-import { evidenceTag } from "./labels.js";
+import { evidenceTag, FIRST_DISORDER } from "./labels.js";
 import { disorderName, kneeName, presets, presetText } from "./names.js";
 import { request } from "./report.js";
 import { saveKnee } from "./save-knee.js";
 import { onLanguage, text, textOr } from "./strings.js";
-
-// The knee that the project is named for is the first card.
-const FIRST = "crepitus";
 
 const chosen = new Map();
 let cards = [];
@@ -130,7 +127,7 @@ function build() {
   groups.push(["", presets().filter((preset) => !known.includes(preset.disorder))]);
   const [first, others] = [true, false].map((isFirst) =>
     groups
-      .filter(([name, list]) => list.length && (name === FIRST) === isFirst)
+      .filter(([name, list]) => list.length && (name === FIRST_DISORDER) === isFirst)
       .map(([name, list]) => makeCard(name, list)),
   );
   cards = [...first, healthyCard(), ...others];
@@ -207,12 +204,7 @@ function update() {
 
 /** Starts the Knee tab. */
 export function startKnee() {
-  on("hello", (hello) => {
-    // Presets that were saved before this greeting are in its own list.
-    latest.presets = hello.presets;
-    build();
-  });
-  on("presets", build);
+  for (const kind of ["hello", "presets"]) on(kind, build);
   for (const kind of ["parameters", "holder", "status", "open", "lost", "lesson"]) on(kind, update);
   onLanguage(build);
 }

@@ -1,7 +1,10 @@
-// Names of what a preset is, in the chosen language, without a server.
+// Names of what a preset is, and values that may be hidden, in the chosen language, without a server.
 
-import { el } from "./dom.js";
+import { el, setText } from "./dom.js";
 import { text, textOr } from "./strings.js";
+
+/** The disorder that is offered first: the project is named for it. */
+export const FIRST_DISORDER = "crepitus";
 
 /** A text of a preset: `title`, `feel` or `severity`. */
 export const presetText = (preset, what) =>
@@ -13,3 +16,9 @@ export const levelName = (level) => (level ? textOr(`level.${level}`, level) : "
 /** A tag that says how well the numbers of a preset are known. */
 export const evidenceTag = (evidence) =>
   evidence && el("span", { class: `tag ${evidence}` }, text(`evidence.${evidence}`));
+
+/** Shows a value, or that it is hidden. */
+export function showSecret(output, isSecret, value) {
+  output.classList.toggle("secret", isSecret);
+  setText(output, isSecret ? text("hidden") : value);
+}

@@ -199,11 +199,12 @@ export function updateMissed() {
     button.hidden = !revealed;
     button.disabled = controlReason() !== "";
   }
-  const findings = revealed && lesson.blind ? (examination?.findings ?? []) : [];
+  // Those of the answer: the knee may have been felt again since.
+  const kept = revealed && lesson.blind ? examination?.of_answer : null;
+  const findings = kept?.trial === lesson.trial ? kept.findings : [];
   const left = missed(findings).map(findingText);
-  const none = findings.length ? [text("run.missed-nothing")] : [];
-  const machine = findings.length && !examination.by_person;
-  setLines(view.missed, machine ? [text("run.missed-machine")] : left.length ? left : none);
+  const nothing = () => text(kept.by_person ? "run.missed-nothing" : "run.missed-machine");
+  setLines(view.missed, left.length || !findings.length ? left : [nothing()]);
 }
 
 function showAnswers(lesson) {

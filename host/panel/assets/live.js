@@ -1,10 +1,11 @@
 // The live part: each frame of the screen shows the newest bins as curves,
 // numbers and a leg. Everything that is measured about it is in `crepitusStats`.
 
-import { RecentBins } from "./bins.js";
+import { BINS_A_SECOND, RecentBins } from "./bins.js";
 import { Charts, colours } from "./charts.js";
 import { isReplay, latest, on } from "./connection.js";
 import { byId, el, setText, tick } from "./dom.js";
+import { showSecret } from "./labels.js";
 import { latenessOf } from "./lateness.js";
 import { makeLeg } from "./leg.js";
 import { drawInside, startInside } from "./live-inside.js";
@@ -14,7 +15,6 @@ import { store, stored } from "./storage.js";
 import { number, onLanguage, text } from "./strings.js";
 
 const WINDOWS = [5, 10, 30];
-const BINS_A_SECOND = 200;
 const KEPT = 2000;
 // Numbers that are older than this are not shown: they would be taken for what is now.
 const STALE_AFTER_MS = 400;
@@ -79,11 +79,6 @@ let legend = null;
 
 /** The middle of a bin's range, or NaN. */
 const middle = (low, high) => (low + high) / 2;
-
-function showSecret(output, secret, value) {
-  output.classList.toggle("secret", secret);
-  setText(output, secret ? text("hidden") : value);
-}
 
 // Numbers for people: five times a second is what can be read.
 function showWords(now) {

@@ -6,8 +6,8 @@ import { text, textOr } from "./strings.js";
 
 export { levelName, presetText };
 
-/** All presets: those saved since the greeting replace its list. */
-export const presets = () => latest.presets ?? latest.hello?.presets ?? [];
+/** All presets. */
+export const presets = () => latest.presets ?? [];
 
 /** A preset by its name. */
 export const presetOf = (name) => presets().find((preset) => preset.name === name);

@@ -1,15 +1,15 @@
 // Plays samples in the order in which they come, in the thread of the browser's sound.
 
-// 50 ms lie between the first sample that comes and its sound; where 150 ms wait, the oldest are left out.
-const LEAD = 2400;
-const MOST = 7200;
 const ROOM = 16384;
 
 registerProcessor(
   "torque",
   class extends AudioWorkletProcessor {
-    constructor() {
+    // `lead`: samples between the first that comes and its sound. Where more than `most` wait, the oldest go.
+    constructor({ processorOptions: { lead, most } }) {
       super();
+      this.lead = lead;
+      this.most = most;
       this.ring = new Float32Array(ROOM);
       this.written = 0;
       this.played = 0;
@@ -19,11 +19,11 @@ registerProcessor(
 
     take(samples) {
       for (const sample of samples) this.ring[this.written++ % ROOM] = sample;
-      if (this.written - this.played > MOST) this.played = this.written - LEAD;
+      if (this.written - this.played > this.most) this.played = this.written - this.lead;
     }
 
     process(inputs, [[out]]) {
-      this.plays ||= this.written - this.played >= LEAD;
+      this.plays ||= this.written - this.played >= this.lead;
       for (let i = 0; i < out.length; i++) {
         this.plays &&= this.played < this.written;
         out[i] = this.plays ? this.ring[this.played++ % ROOM] : 0;

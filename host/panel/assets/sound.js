@@ -6,13 +6,18 @@ import { RATE_HZ, SoundLaw } from "./sound-law.js";
 import { store, stored } from "./storage.js";
 import { onLanguage, text } from "./strings.js";
 
-// As the worklet: time before the first piece, and of pieces that wait.
+// Between the first torque that comes and its sound; and what waits at most.
 const LEAD_S = 0.05;
 const MOST_S = 0.15;
 
 async function workletOf(context, module) {
   await context.audioWorklet.addModule(module);
-  const node = new AudioWorkletNode(context, "torque", { numberOfInputs: 0, outputChannelCount: [1] });
+  const samplesOf = (seconds) => Math.round(seconds * RATE_HZ);
+  const node = new AudioWorkletNode(context, "torque", {
+    numberOfInputs: 0,
+    outputChannelCount: [1],
+    processorOptions: { lead: samplesOf(LEAD_S), most: samplesOf(MOST_S) },
+  });
   return { node, way: "worklet", play: (samples) => node.port.postMessage(samples, [samples.buffer]) };
 }
 
@@ -40,6 +45,7 @@ export class Sound {
     this.module = module;
     this.law = new SoundLaw();
     this.output = null;
+    this.opening = null;
     this.isOn = false;
     this.volume = 0.7;
     // What a test looks at.
@@ -50,14 +56,19 @@ export class Sound {
   async start() {
     this.isOn = true;
     this.law.clear();
-    if (this.output) return this.context.resume();
+    this.opening ??= this.open();
+    await this.opening;
+    // It may have been switched off meanwhile.
+    return this.isOn ? this.context.resume() : this.context.suspend();
+  }
+
+  async open() {
     this.context = new AudioContext({ sampleRate: RATE_HZ, latencyHint: "interactive" });
     this.output = await workletOf(this.context, this.module).catch(() => piecesOf(this.context));
     this.stats.way = this.output.way;
     this.gain = this.context.createGain();
     this.output.node.connect(this.gain).connect(this.context.destination);
     this.setVolume(this.volume);
-    return this.context.resume();
   }
 
   stop() {

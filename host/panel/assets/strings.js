@@ -48,10 +48,10 @@ export function plain(value) {
   return value.toLocaleString(language, { maximumSignificantDigits: 6, useGrouping: false });
 }
 
-/** Fills the static texts of a part of the page. */
-export function fillTexts(root = document) {
-  for (const at of root.querySelectorAll("[data-text]")) at.textContent = text(at.dataset.text);
-  for (const at of root.querySelectorAll("[data-label]"))
+/** Fills the static texts of the page. */
+function fillTexts() {
+  for (const at of document.querySelectorAll("[data-text]")) at.textContent = text(at.dataset.text);
+  for (const at of document.querySelectorAll("[data-label]"))
     at.setAttribute("aria-label", text(at.dataset.label));
 }
 

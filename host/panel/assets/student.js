@@ -1,7 +1,7 @@
 // A student's phone: join under a pseudonym, answer, stop. The server sends nothing of the others.
 
 import { makeAnswer, outcome } from "./answer-form.js";
-import { connect, latest, on } from "./connection.js";
+import { ask, connect, latest, on } from "./connection.js";
 import { byId, el, field, setText } from "./dom.js";
 import { kneeText, kneeTitle, lessonTitle } from "./names.js";
 import { startPhone } from "./phone.js";
@@ -14,8 +14,8 @@ let shown = null;
 // Name and key of an earlier time: after a reload this phone has the same seat.
 const seat = () => JSON.parse(stored("seat") ?? "null");
 
-async function join(own) {
-  const given = await request("join", own);
+async function join(own, send = request) {
+  const given = await send("join", own);
   if (given) return store("seat", JSON.stringify(given));
   latest.own = null;
   return render();
@@ -127,7 +127,10 @@ function render() {
   byId("main").replaceChildren(...[parts].flat().filter(Boolean));
 }
 
+// Nobody has pressed anything: where the seat is gone there is the form, and nothing to explain.
+const rejoin = () => join(seat(), (what, more) => ask(what, more).catch(() => null));
+
 await startPhone(render);
-on("hello", () => (seat() ? join(seat()) : render()));
+on("hello", () => (seat() ? rejoin() : render()));
 on("own", render);
 connect();

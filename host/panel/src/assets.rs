@@ -44,6 +44,7 @@ assets![
     SCRIPT "guide.js",
     SCRIPT "hand.js",
     SCRIPT "inside.js",
+    SCRIPT "joint.js",
     SCRIPT "knee.js",
     SCRIPT "labels.js",
     SCRIPT "lateness.js",

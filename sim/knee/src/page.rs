@@ -11,8 +11,10 @@
 mod columns;
 #[cfg(target_arch = "wasm32")]
 mod exports;
+mod findings;
 
 pub use columns::{Columns, MOST_TICKS, ROOM};
+pub use findings::{Findings, OUTCOMES};
 
 use crate::examination::{COUNT, Examination, Step};
 use crate::hand::{HandPath, HandState};
@@ -171,6 +173,7 @@ pub struct Page {
     slot: Slot,
     columns: Columns,
     measures: [f32; COUNT],
+    findings: Findings,
 }
 
 impl Default for Page {
@@ -186,6 +189,7 @@ impl Page {
             slot: Slot::Empty,
             columns: Columns::EMPTY,
             measures: [0.0; COUNT],
+            findings: Findings::EMPTY,
         }
     }
 
@@ -202,8 +206,16 @@ impl Page {
     /// [`ValueError`] if the default values are invalid: a bug in their table, which a test excludes.
     pub fn begin(&mut self) -> Result<(), ValueError> {
         self.slot = Slot::Knee(Knee::healthy()?);
-        self.measures = [f32::NAN; COUNT];
+        self.examined();
         Ok(())
+    }
+
+    /// Takes over what the examination has measured and found.
+    fn examined(&mut self) {
+        if let Slot::Knee(knee) = &self.slot {
+            self.measures = knee.examination.measures().map(f32::from_f64);
+            self.findings = Findings::of(&knee.examination);
+        }
     }
 
     /// Stages a value of the next [`Self::commit`]. Returns whether there is such a parameter.
@@ -220,7 +232,9 @@ impl Page {
     /// # Errors
     /// [`ValueError`] if the values are invalid. Then nothing changes, and nothing is staged.
     pub fn commit(&mut self) -> Result<(), ValueError> {
-        self.knee().map_or(Ok(()), Knee::commit)
+        let committed = self.knee().map_or(Ok(()), Knee::commit);
+        self.examined();
+        committed
     }
 
     /// Moves the hand towards an angle, or lets go of the leg.
@@ -241,7 +255,7 @@ impl Page {
         for (at, _) in (0..ROOM).zip(0..ticks) {
             self.columns.put(at, &knee.tick());
         }
-        self.measures = knee.examination.measures().map(f32::from_f64);
+        self.examined();
         ticks.min(MOST_TICKS)
     }
 
@@ -254,6 +268,11 @@ impl Page {
     /// [`Measure::ALL`](crate::examination::Measure::ALL); NaN where there is none.
     pub fn measures(&self) -> &[f32; COUNT] {
         &self.measures
+    }
+
+    /// Findings of the examination since the last [`Self::commit`].
+    pub fn findings(&self) -> &Findings {
+        &self.findings
     }
 
     /// Steps of the examination that were done, a bit each in the order of [`Step::ALL`].
@@ -391,6 +410,30 @@ mod tests {
         page.advance(20);
         assert_eq!(page.steps(), 0);
         assert!(measured(&page, Measure::Range) < 1.0);
+    }
+
+    /// The catch at its defaults appears from 40 deg/s on.
+    #[test]
+    fn an_examination_finds_what_the_movements_lacked() {
+        let outcome = |page: &Page| OUTCOMES[page.findings().outcomes[0] as usize];
+        let mut page = page();
+        assert_eq!(page.findings().count, 0);
+        set(&mut page, "spasticity.render", 1.0);
+        assert_eq!(page.commit(), Ok(()));
+        assert_eq!((page.findings().count, outcome(&page)), (1, "not-moved"));
+        // 20 deg/s.
+        for step in 1_u8..=120 {
+            bend(&mut page, 0.5 * f32::from(step), 25);
+        }
+        assert_eq!(outcome(&page), "too-slow");
+        let (reached, needed) = (page.findings().reached[0], page.findings().needed[0]);
+        assert!((15.0..35.0).contains(&reached), "{reached}");
+        assert_eq!(needed, 40.0);
+        bend(&mut page, 100.0, 600);
+        assert_eq!(outcome(&page), "shown");
+        assert!(page.findings().reached[0].is_nan());
+        assert_eq!(page.commit(), Ok(()));
+        assert_eq!(outcome(&page), "not-moved");
     }
 
     #[test]

@@ -151,6 +151,37 @@ fn in_node(knees: &[Knee], motion: &[(u32, f32)]) -> Option<Vec<u8>> {
     Some(output.stdout)
 }
 
+/// Compares measures, steps and findings with those of Node; returns what is behind them.
+fn examined<'t>(name: &str, page: &Page, theirs: &'t [[u8; 4]]) -> &'t [[u8; 4]] {
+    let same = |ours: &[f32], theirs: &[[u8; 4]]| {
+        for (ours, word) in ours.iter().zip(theirs) {
+            let theirs = f32::from_le_bytes(*word);
+            // Every NaN is none.
+            let is_none = ours.is_nan() && theirs.is_nan();
+            assert!(
+                is_none || ours.to_bits() == theirs.to_bits(),
+                "{name}: {ours}, {theirs}"
+            );
+        }
+    };
+    let (measures, rest) = theirs.split_at_checked(COUNT).unwrap();
+    same(page.measures(), measures);
+    let (numbers, rest) = rest.split_at_checked(2).unwrap();
+    let findings = page.findings();
+    let ours = [page.steps(), findings.count].map(u32::to_le_bytes);
+    assert_eq!(ours, numbers, "{name}: steps, number of findings");
+    let count = findings.count as usize;
+    let (outcomes, rest) = rest.split_at_checked(count).unwrap();
+    for (ours, word) in findings.outcomes.iter().zip(outcomes) {
+        assert_eq!(*ours, u32::from_le_bytes(*word), "{name}");
+    }
+    let (reached, rest) = rest.split_at_checked(count).unwrap();
+    same(&findings.reached, reached);
+    let (needed, rest) = rest.split_at_checked(count).unwrap();
+    same(&findings.needed, needed);
+    rest
+}
+
 #[test]
 fn the_page_is_the_native_knee_to_the_bit() {
     let (knees, motion) = (knees(), motion());
@@ -180,19 +211,7 @@ fn the_page_is_the_native_knee_to_the_bit() {
                 panic!("{name}: column {column}, frame {frame}, tick {tick}");
             }
         }
-        let (measures, rest) = theirs.split_at_checked(COUNT).unwrap();
-        for (ours, word) in page.measures().iter().zip(measures) {
-            let measured = f32::from_le_bytes(*word);
-            // Every NaN is none.
-            let is_none = ours.is_nan() && measured.is_nan();
-            assert!(
-                is_none || ours.to_bits() == measured.to_bits(),
-                "{name}: {ours}, {measured}"
-            );
-        }
-        let (steps, rest) = rest.split_first().unwrap();
-        assert_eq!(page.steps(), u32::from_le_bytes(*steps), "{name}");
-        theirs = rest;
+        theirs = examined(name, &page, theirs);
         if !resists {
             silent.push(name.as_str());
         }

@@ -71,6 +71,18 @@ export class Engine {
     return new Float32Array(this.exports.memory.buffer, this.exports.examination(), count);
   }
 
+  /** The signs of the knee: outcome by number, what was reached and what it takes, NaN where there is none. */
+  findings() {
+    const { memory, findings, outcomes, reached, needed } = this.exports;
+    const count = findings();
+    const numbers = [reached, needed].map((column) => new Float32Array(memory.buffer, column(), count));
+    return Array.from(new Uint32Array(memory.buffer, outcomes(), count), (outcome, i) => ({
+      outcome,
+      reached: numbers[0][i],
+      needed: numbers[1][i],
+    }));
+  }
+
   /** The steps of the examination that were done, a bit each. */
   steps() {
     return this.exports.steps();

@@ -1,15 +1,31 @@
-// The examination of a knee so far: what was measured, which steps were done, and after an answer what was missed.
+// The examination of a knee so far: what was measured, which steps were done, and what was missed.
 
 import { el, setText } from "../dom.js";
-import { findingText, makeMeasures } from "../measures.js";
+import { findingText, makeMeasures, missed } from "../measures.js";
 import { onLanguage, text } from "../strings.js";
 import { data } from "./data.js";
 
-const SPEED = data.measures.findIndex(({ name }) => name === "peak-speed");
+/** The signs of a knee, and whether the movement of each was made. */
+const findingsOf = (engine, preset) =>
+  engine.findings().map((found, i) => ({
+    ...found,
+    effect: preset.signs[i],
+    outcome: data.outcomes[found.outcome],
+  }));
 
-/** The examination in a box; `letGo()` is called when the leg is to fall. */
+/** What the examination has missed of a knee, as elements. */
+export function missedOf(engine, preset) {
+  const findings = findingsOf(engine, preset);
+  const left = missed(findings).map((finding) => findingText(finding));
+  const lines = left.length || !findings.length ? left : [text("run.missed-nothing")];
+  return lines.map((line) => el("p", { class: "instruction" }, line));
+}
+
+/**
+ * The examination in a box; `letGo()` is called when the leg is to fall. The returned function shows that of a knee;
+ * what tells something of the torque is left out while that is hidden.
+ */
 export function makeExamination(host, letGo) {
-  let measured = new Float32Array(data.measures.length).fill(NaN);
   let showState = null;
   const lists = el("div");
   const button = el("button", { type: "button", onclick: letGo });
@@ -20,27 +36,15 @@ export function makeExamination(host, letGo) {
     setText(button, text("page.let-go"));
   }
 
-  /** Shows measures and steps; what tells something of the torque is left out while that is hidden. */
-  function show(engine, isHidden) {
-    measured = engine.measures(data.measures.length);
+  onLanguage(build);
+  build();
+  return (engine, preset, isHidden) => {
+    const measured = engine.measures(data.measures.length);
     const done = engine.steps();
     showState({
       measures: data.measures.map(({ is_of_torque }, i) => (isHidden && is_of_torque ? NaN : measured[i])),
       steps: data.steps.map((step, i) => ({ step, done: (done & (1 << i)) !== 0 })),
-      findings: null,
+      findings: isHidden ? null : findingsOf(engine, preset),
     });
-  }
-
-  /** What these movements could not show of a knee, as elements. */
-  function missed(preset) {
-    const fastest = Number.isFinite(measured[SPEED]) ? measured[SPEED] : 0;
-    const late = preset.signs.filter(({ appears_from_deg_s: needed }) => needed > fastest);
-    const words = ({ effect, appears_from_deg_s: needed }) =>
-      findingText({ effect, outcome: "too-slow", reached: fastest, needed });
-    return late.map((sign) => el("p", { class: "instruction" }, words(sign)));
-  }
-
-  onLanguage(build);
-  build();
-  return { show, missed };
+  };
 }

@@ -2,14 +2,13 @@
 // its numbers are known.
 
 import { el, freshId, setText } from "../dom.js";
-import { evidenceTag, presetText } from "../labels.js";
+import { evidenceTag, FIRST_DISORDER, presetText } from "../labels.js";
 import { onLanguage, text, textOr } from "../strings.js";
 import { data } from "./data.js";
 
 /** A knee without a disorder. */
 export const HEALTHY = { name: "healthy", disorder: "healthy", values: [], effects: [], signs: [] };
 
-const FIRST = "crepitus";
 const START = "coarse";
 
 /** The name of a knee. */
@@ -26,7 +25,7 @@ export function disorderOf(name) {
 /** The disorders, in the order in which they are offered. */
 export function disorders() {
   const names = data.disorders.map(({ name }) => name);
-  return [FIRST, ...names.filter((name) => name !== FIRST)];
+  return [FIRST_DISORDER, ...names.filter((name) => name !== FIRST_DISORDER)];
 }
 
 /** What a knee is, in words. */

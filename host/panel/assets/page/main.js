@@ -1,14 +1,17 @@
 // The page of one file: a knee that a hand moves, without a program. Everything that is measured about it is in
 // `crepitusKnee`.
 
+import { BINS_A_SECOND } from "../bins.js";
 import { makeCutaway } from "../cutaway.js";
 import { byId, el, setText } from "../dom.js";
-import { Feel } from "../feel.js";
+import { addFeelSwitch, Feel } from "../feel.js";
 import { Inside } from "../inside.js";
+import { crepitusOf, scaleOf } from "../joint.js";
+import { showSecret } from "../labels.js";
 import { makeSoundControls, Sound } from "../sound.js";
 import { number, onLanguage, startStrings, text } from "../strings.js";
 import { bytesOf, data } from "./data.js";
-import { makeExamination } from "./examination.js";
+import { makeExamination, missedOf } from "./examination.js";
 import { Grip } from "./grip.js";
 import { Knee } from "./knee.js";
 import { HEALTHY, makeKnees, titleOf } from "./knees.js";
@@ -18,49 +21,34 @@ import { makeQuiz } from "./quiz.js";
 // A picture that comes later than this has no more of the knee's time: it would catch up for ever.
 const LONGEST_MS = 100;
 const WORDS_MS = 200;
-const BINS_A_SECOND = 200;
 // Of the healthy knee beside another one its leg is seen: it has no object.
 const BESIDE = { torque: false, states: true };
 
 const stats = { pictures: 0, samples: 0, breaks: 0, peak: 0, states: 0, first: null };
 
-function showSecret(output, isSecret, value) {
-  output.classList.toggle("secret", isSecret);
-  setText(output, isSecret ? text("hidden") : value);
-}
-
 /** The parameters of a knee: all of them, also those that another knee has changed. */
 const valuesOf = (preset) => new Map([...data.healthy, ...preset.values]);
-
-/** The crepitus of these parameters, or null. */
-function crepitusOf(values) {
-  const value = (key) => values.get(data.ids[`crepitus.${key}`]);
-  if (!value("render")) return null;
-  return {
-    stiffness: value("stiffness_nm_per_rad"),
-    static: value("static_torque_nm"),
-    kinetic: value("kinetic_torque_nm"),
-    isAlone: false,
-  };
-}
 
 async function start() {
   await startStrings(byId("language"), data.texts);
   const module = bytesOf(data.wasm);
   const [knee, healthy] = [await Knee.load(module), await Knee.load(module)];
   const hosts = { leg: byId("leg"), slow: byId("slow"), loop: byId("loop"), flow: byId("flow") };
-  const inside = new Inside(hosts, data.scale);
+  const scale = scaleOf((name) => data.brace[name]);
+  const inside = new Inside(hosts, scale);
   const showHealthy = makeCutaway(byId("healthy-leg"));
   const sound = new Sound(`data:text/javascript,${encodeURIComponent(data.worklet)}`);
-  const feel = new Feel(data.states);
-  const grip = new Grip(byId("leg"), data.scale.angle);
-  const examination = makeExamination(byId("examination"), () => grip.release());
+  const feel = new Feel();
+  const grip = new Grip(byId("leg"), scale.angle);
+  const showExamination = makeExamination(byId("examination"), () => grip.release());
   let preset = HEALTHY;
   let values = valuesOf(preset);
   let masked = { torque: false, states: false };
   let isTouched = false;
 
+  feel.setStates(data.states);
   makeSoundControls(byId("sound"), sound);
+  addFeelSwitch(byId("sound"), feel);
 
   /** Says in one sentence what to do next. */
   function advise() {
@@ -77,7 +65,9 @@ async function start() {
     healthy.begin([]);
     grip.begin();
     sound.clear();
-    inside.setKnee(blind ? null : crepitusOf(values), blind);
+    // Whatever adds to the torque: the samples have the spring's own.
+    const crepitus = crepitusOf((name) => values.get(data.ids[name]), false);
+    inside.setKnee(blind ? null : crepitus, blind);
     byId("choice").hidden = blind;
     byId("healthy").hidden = !beside;
     byId("leg-name").hidden = !beside;
@@ -92,7 +82,7 @@ async function start() {
   });
   makeQuiz(byId("quiz"), {
     show: (next, how) => examine(next ?? chosen, how),
-    missed: (what) => examination.missed(what),
+    missed: (what) => missedOf(knee.engine, what),
   });
   examine(chosen, { blind: false, beside: false });
   onLanguage(advise);
@@ -114,7 +104,7 @@ async function start() {
     const pain = hurts(values, columns.states[last], angle) ? text("pain.hurts") : "";
     byId("pain").hidden = pain === "";
     setText(byId("pain"), pain);
-    examination.show(knee.engine, masked.states);
+    showExamination(knee.engine, preset, masked.states);
   }
 
   /** What came of the last bins. */
@@ -124,7 +114,7 @@ async function start() {
       stats.breaks += columns.breaks[i];
       stats.states |= columns.states[i];
       stats.peak = Math.max(stats.peak, columns.torqueHigh[i], -columns.torqueLow[i]);
-      if (sound.isOn) feel.take(columns.breaks[i], columns.states[i]);
+      feel.take(columns.breaks[i], columns.states[i]);
     }
   }
 

@@ -1,11 +1,11 @@
 // Bins of the page's own samples, in the columns of those of a frame, with the imaginary object besides.
 
-import { MARK, RecentBins } from "../bins.js";
+import { BINS_A_SECOND, MARK, RecentBins } from "../bins.js";
+import { TICKS_A_MS } from "./engine.js";
 
-const SAMPLES = 100;
-const SAMPLE_S = 5e-5;
+const SAMPLE_S = 0.001 / TICKS_A_MS;
+const SAMPLES = (1000 * TICKS_A_MS) / BINS_A_SECOND;
 const DEGREES = 180 / Math.PI;
-const BINS_A_SECOND = 200;
 
 function widen(low, high, at, value) {
   if (value < low[at]) low[at] = value;

@@ -5,6 +5,7 @@ use super::base64::base64;
 use crate::hello;
 use crate::strings::{LANGUAGES, Strings};
 use crepitus_knee::examination::{Step, signs};
+use crepitus_knee::page::OUTCOMES;
 use crepitus_protocol::Values;
 use crepitus_protocol::parameters::find;
 use crepitus_scene::preset::{self, Preset};
@@ -36,7 +37,7 @@ pub(super) const DYNAMIC: [&str; 9] = [
     "step.",
 ];
 
-/// Parameters that the page needs by name.
+/// Parameters of a knee that the page needs by name.
 const NAMED: [&str; 8] = [
     "crepitus.render",
     "crepitus.stiffness_nm_per_rad",
@@ -46,6 +47,14 @@ const NAMED: [&str; 8] = [
     "range-limit.extension_torque_nm",
     "range-limit.flexion_limit_deg",
     "range-limit.flexion_torque_nm",
+];
+
+/// Parameters of a brace whose defaults the page needs.
+const OF_BRACE: [&str; 4] = [
+    "limits.torque_nm",
+    "range.fade_deg",
+    "range.least_deg",
+    "range.most_deg",
 ];
 
 /// All of it as JSON without a `<`, which could end its tag. `sources`: the code that names the texts
@@ -61,25 +70,23 @@ pub(super) fn json(language: Option<&str>, sources: &str) -> Result<String, Page
         "states": hello::states(),
         "healthy": healthy(),
         "ids": ids(),
+        "brace": brace(),
         "measures": hello::measures(),
         "steps": Step::ALL.map(Step::name),
-        "scale": scale(),
+        "outcomes": OUTCOMES,
         "worklet": WORKLET,
         "wasm": base64(WASM),
     });
     Ok(data.to_string().replace('<', "\\u003c"))
 }
 
-/// Presets that ship, each with the least speeds from which its signs appear, °/s.
+/// Presets that ship, each with the effects that its signs are of.
 fn presets() -> Value {
     let mut all = hello::presets(&[]);
     let described = all.as_array_mut().into_iter().flatten();
     for (described, preset) in described.zip(preset::shipped()) {
         let signs = signs(&preset.effect_settings(), preset.joint().is_some());
-        let signs = signs.map(|sign| {
-            json!({ "effect": sign.effect, "appears_from_deg_s": sign.appears_from_deg_s() })
-        });
-        described["signs"] = signs.collect();
+        described["signs"] = signs.map(|sign| sign.effect).collect();
     }
     all
 }
@@ -128,21 +135,19 @@ fn ids() -> Map<String, Value> {
         .collect()
 }
 
-/// Range of the loop's axes: angles of the device up to the stops of the brace, deg, and its largest
-/// torque, N·m.
-fn scale() -> Value {
+/// Defaults of a brace by name.
+fn brace() -> Map<String, Value> {
     let values = Values::default();
-    let value = |name| find(name).and_then(|(id, _)| values.get(id));
-    let beyond = |name, by: f64| value(name).map(|angle_deg| angle_deg + by);
-    json!({
-        "angle": [beyond("range.least_deg", -5.0), beyond("range.most_deg", 5.0)],
-        "torque": value("limits.torque_nm"),
-    })
+    let named = OF_BRACE.iter().filter_map(|name| Some((name, find(name)?.0)));
+    named
+        .map(|(name, id)| ((*name).to_owned(), json!(values.get(id))))
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_knee::Page;
     use std::collections::BTreeSet;
 
     fn parsed(language: Option<&str>) -> Value {
@@ -181,8 +186,9 @@ mod tests {
     fn numbers_that_the_page_needs_are_there() {
         let data = parsed(None);
         assert_eq!(data["ids"].as_object().unwrap().len(), NAMED.len());
-        assert_eq!(data["scale"]["angle"], json!([-10.0, 130.0]));
-        assert_eq!(data["scale"]["torque"], 4.5);
+        assert_eq!(data["brace"].as_object().unwrap().len(), OF_BRACE.len());
+        assert_eq!(data["brace"]["limits.torque_nm"], 4.5);
+        assert_eq!(data["brace"]["range.fade_deg"], 5.0);
         let healthy: BTreeSet<_> = (data["healthy"].as_array().unwrap().iter())
             .map(|pair| pair[0].as_u64().unwrap())
             .collect();
@@ -192,14 +198,27 @@ mod tests {
                 assert!(healthy.contains(&pair[0].as_u64().unwrap()), "{preset}");
             }
         }
-        // A catch appears from a speed on.
-        let presets = data["presets"].as_array().unwrap();
-        let catch = presets
-            .iter()
-            .find(|preset| preset["name"] == "mas-1-catch");
-        let sign = &catch.unwrap()["signs"][0];
-        assert_eq!(sign["effect"], "spasticity");
-        assert!(sign["appears_from_deg_s"].as_f64() > Some(30.0), "{sign}");
+    }
+
+    /// The page has the findings by number only, in the order of these effects.
+    #[test]
+    fn signs_are_those_that_the_knee_of_the_page_finds() {
+        let data = parsed(None);
+        let mut page = Box::new(Page::new());
+        for preset in data["presets"].as_array().unwrap() {
+            page.begin().unwrap();
+            for pair in preset["values"].as_array().unwrap() {
+                let id = u32::try_from(pair[0].as_u64().unwrap()).unwrap();
+                assert!(page.set(id, pair[1].as_f64().unwrap()), "{preset}");
+            }
+            page.commit().unwrap();
+            let signs = preset["signs"].as_array().unwrap();
+            assert_eq!(page.findings().count as usize, signs.len(), "{preset}");
+            assert!(!signs.is_empty(), "{preset}");
+            // A sign is of one of its effects.
+            let effects = preset["effects"].as_array().unwrap();
+            assert!(signs.iter().all(|sign| effects.contains(sign)), "{preset}");
+        }
     }
 
     #[test]

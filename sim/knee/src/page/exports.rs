@@ -1,10 +1,11 @@
-//! Functions that a page calls. Columns are addresses in its memory, of [`ROOM`](super::ROOM) numbers each.
+//! Functions that a page calls. Columns are addresses in its memory, of [`ROOM`](super::ROOM) numbers each,
+//! or a number for each sign.
 #![allow(
     unsafe_code,
     reason = "names that a page can call, and the one knee that it has"
 )]
 
-use super::{Columns, Page};
+use super::{Columns, Findings, Page};
 use core::panic::PanicInfo;
 use crepitus_protocol::ValueError;
 
@@ -20,6 +21,11 @@ fn with<R>(work: impl FnOnce(&mut Page) -> R) -> R {
 /// Address of a column.
 fn column<T>(of: impl FnOnce(&Columns) -> &[T]) -> *const T {
     with(|page| of(page.columns()).as_ptr())
+}
+
+/// Address of a column of findings.
+fn of_findings<T>(of: impl FnOnce(&Findings) -> &[T]) -> *const T {
+    with(|page| of(page.findings()).as_ptr())
 }
 
 /// 0, or 1 + the id of the parameter to change: 256 for a rule between several.
@@ -112,6 +118,30 @@ extern "C" fn phase() -> *const u32 {
 #[unsafe(no_mangle)]
 extern "C" fn examination() -> *const f32 {
     with(|page| page.measures().as_ptr())
+}
+
+/// Number of the knee's signs, each with a row in the columns of findings.
+#[unsafe(no_mangle)]
+extern "C" fn findings() -> u32 {
+    with(|page| page.findings().count)
+}
+
+/// Outcome of each sign: its place in [`OUTCOMES`](super::OUTCOMES).
+#[unsafe(no_mangle)]
+extern "C" fn outcomes() -> *const u32 {
+    of_findings(|findings| &findings.outcomes)
+}
+
+/// Reached speed, angle or time of each sign.
+#[unsafe(no_mangle)]
+extern "C" fn reached() -> *const f32 {
+    of_findings(|findings| &findings.reached)
+}
+
+/// Speed, angle or time that each sign takes.
+#[unsafe(no_mangle)]
+extern "C" fn needed() -> *const f32 {
+    of_findings(|findings| &findings.needed)
 }
 
 /// Steps of the examination that were done, a bit each.
