@@ -45,7 +45,7 @@ async function examine(page) {
 /** What the page says after the answers about the movements: nothing was missed, but the end of a bent contracture. */
 function missed({ disorder }) {
   if (disorder === "healthy") return null;
-  return disorder === "range-deficit" ? /you came to (9|10)\d°; it is felt at 11\d°/ : /Nothing was missed/;
+  return disorder === "range-deficit" ? /came to (9|10)\d°; it is felt at 11\d°/ : /Nothing was missed/;
 }
 
 test("six knees blind, two students, to the printed report", async () => {
