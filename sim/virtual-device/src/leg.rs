@@ -22,8 +22,8 @@
 //! within a tenth of a second, and rests.
 //!
 //! A leg that [begins straight](Scene::begins_straight) is at 0° until the motor is driven, and is led
-//! to the motion's start before that begins. An [examiner](Scene::has_examiner) chooses the motion by the knee. A
-//! [hand](HandInput) can take the leg from either, and give it back.
+//! to the motion's start before that begins. An [examiner](Scene::has_examiner) chooses the motion by the knee, but in a
+//! [blind](HandInput::set_blind) trial. A [hand](HandInput) can take the leg from either, and give it back.
 
 mod coil;
 mod examiner;
@@ -151,7 +151,7 @@ impl Leg {
     }
 
     /// Tells the examiner, if there is one, which knee it is: its effects, and whether the imaginary object is on. For
-    /// another knee he or she stops, and begins another examination.
+    /// another knee he or she stops, and begins another examination; not in a blind trial.
     pub fn examine(&mut self, effects: &EffectSettings, grates: bool) {
         self.mover.examine(effects, grates);
     }

@@ -23,6 +23,9 @@ const ROUGH_NM: f64 = 0.05;
 const LONGEST_S: f64 = 24.0;
 const SHORTEST_S: f64 = 8.0;
 
+/// Time of the plan of a blind trial, and of the way to it, s.
+const BLIND_S: f64 = 43.0;
+
 /// An examination by the examiner.
 struct Examined {
     examination: Examination,
@@ -40,10 +43,11 @@ fn scene() -> Scene {
     }
 }
 
-/// Examines a knee until all of its signs were shown, and four seconds more.
-fn examined(preset: &Preset) -> Examined {
+/// Examines a knee until all of its signs were shown, and four seconds more; in a blind trial for its whole plan.
+fn examined(preset: &Preset, is_blind: bool) -> Examined {
     let mut host = Host::new(&scene(), &Start::default());
     host.run(400);
+    host.device.board().leg().hand().set_blind(is_blind);
     host.commit(|values| *values = with_preset(values, preset, false))
         .expect("a commit");
     host.arm();
@@ -69,7 +73,12 @@ fn examined(preset: &Preset) -> Examined {
         if findings.all(|finding| finding.outcome == Outcome::Shown) {
             shown_for_s += TICK_S;
         }
-        if (shown_for_s >= 4.0 && time_s >= SHORTEST_S) || time_s >= LONGEST_S {
+        let is_over = if is_blind {
+            time_s >= BLIND_S
+        } else {
+            (shown_for_s >= 4.0 && time_s >= SHORTEST_S) || time_s >= LONGEST_S
+        };
+        if is_over {
             break;
         }
     }
@@ -161,10 +170,23 @@ fn every_preset_shows_its_signs_and_none_is_an_overload() {
             let own = preset::shipped().iter().skip(nth).step_by(threads);
             scope.spawn(move || {
                 for preset in own {
-                    let examined = examined(preset);
+                    let examined = examined(preset, false);
                     shows_its_signs(preset, &examined);
                     is_measured(preset, &examined);
                 }
+            });
+        }
+    });
+}
+
+/// Those that load gear and motor most: by their height, by the angle at which they are held, until they give way.
+#[test]
+fn a_blind_trial_shows_the_signs_of_the_stiffest_knees_without_an_overload() {
+    thread::scope(|scope| {
+        for name in ["mas-4-lead-pipe", "mas-3-reflex", "clasp-knife-severe"] {
+            scope.spawn(move || {
+                let preset = preset::find(name).expect("it ships");
+                shows_its_signs(preset, &examined(preset, true));
             });
         }
     });
@@ -174,7 +196,7 @@ fn every_preset_shows_its_signs_and_none_is_an_overload() {
 #[test]
 fn a_healthy_knee_has_nothing_to_show() {
     let healthy = Preset::default();
-    let examined = examined(&healthy);
+    let examined = examined(&healthy, false);
     assert_eq!(examined.faults, (None, None));
     assert!(examined.samples.iter().all(|sample| sample[3] == 0.0));
     for measure in [Measure::Catch, Measure::Beats] {

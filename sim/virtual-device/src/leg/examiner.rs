@@ -11,6 +11,10 @@
 //! What a knee needs follows from its own parameters: see [`signs`]. One that is stiffer than gear and motor
 //! bear for long is bent a little at a time, and let go between. Angles are those of the scene, and of a
 //! device whose zero was set with the leg straight.
+//!
+//! In a blind trial the motion must not tell the knee: all get the same plan, which is in `blind.rs`.
+
+mod blind;
 
 use super::movement::{Movement, rest, stop, whole_ticks};
 use crepitus_knee::examination::{Rule, Sign, Step, signs};
@@ -19,6 +23,8 @@ use crepitus_plant::Motion;
 use crepitus_plant::chain::Body;
 use crepitus_plant::motion::Strokes;
 use crepitus_scene::Scene;
+use std::collections::VecDeque;
+use std::iter::once;
 
 /// Speeds, °/s: a slow movement, one that no muscle notices, the way back, a fall, a stretch at least and at most.
 const SLOW_DEG_S: f64 = 45.0;
@@ -63,8 +69,10 @@ pub(super) struct Examiner {
     usual: Strokes,
     /// Effects of the knee, and whether the imaginary object is on.
     knee: (EffectSettings, bool),
-    /// Movement before the plan.
-    first: Option<Movement>,
+    /// Whether a trial is blind, in which every knee is moved alike.
+    is_blind: bool,
+    /// Movements before the plan.
+    first: VecDeque<Movement>,
     plan: Vec<Movement>,
     /// Place of the next movement in the plan.
     next: usize,
@@ -86,7 +94,8 @@ impl Examiner {
         let mut examiner = Self {
             usual,
             knee: (scene.effect_settings(), scene.crepitus.is_some()),
-            first: None,
+            is_blind: false,
+            first: VecDeque::new(),
             plan: Vec::new(),
             next: 0,
             at_rad: usual.from_rad,
@@ -109,20 +118,34 @@ impl Examiner {
     fn choose(&mut self, sense: f64) {
         let (effects, grates) = &self.knee;
         let from_deg = self.at_rad.to_degrees();
-        let stiff_deg = stiff_deg(effects);
-        (self.plan, self.next) = match stiff_deg {
-            Some(presliding_deg) => (bit_by_bit(from_deg, presliding_deg).into(), 0),
-            None => (plan(effects, *grates, &self.usual), 0),
-        };
         let let_go = |deg: f64| Movement::new(from_deg - sense * deg, LET_GO_DEG_S, LET_GO_S);
-        self.first = stiff_deg.filter(|_| sense != 0.0).map(let_go);
+        self.next = 0;
+        if self.is_blind {
+            let eases = let_go(blind::EASE_DEG);
+            self.plan = blind::plan();
+            self.first = once(eases).chain(blind::way_to(eases)).collect();
+            return;
+        }
+        let stiff_deg = stiff_deg(effects);
+        self.plan = match stiff_deg {
+            Some(presliding_deg) => bit_by_bit(from_deg, presliding_deg).into(),
+            None => plan(effects, *grates, &self.usual),
+        };
+        let lets_go = stiff_deg.filter(|_| sense != 0.0).map(let_go);
+        self.first = lets_go.into_iter().collect();
     }
 
-    /// Takes note of the knee. Returns whether it is another one than before, for which a plan has to be chosen.
+    /// Takes note of the knee. Returns whether a plan has to be chosen for it: it is another one than before, and no
+    /// secret.
     pub(super) fn meet(&mut self, knee: &(EffectSettings, bool)) -> bool {
         let is_another = *knee != self.knee;
         self.knee = *knee;
-        is_another
+        is_another && !self.is_blind
+    }
+
+    /// Takes note of whether a trial is blind. Returns whether that has changed, so that a plan has to be chosen.
+    pub(super) fn set_blind(&mut self, is_blind: bool) -> bool {
+        std::mem::replace(&mut self.is_blind, is_blind) != is_blind
     }
 
     /// Goes on from where a leg is, with the plan for the knee from its beginning. Returns the motion that slows the leg
@@ -138,7 +161,7 @@ impl Examiner {
 
     /// Begins the next movement, where the last one ends.
     pub(super) fn begin(&mut self) -> Motion {
-        let movement = self.first.take().or_else(|| {
+        let movement = self.first.pop_front().or_else(|| {
             let place = self.next % self.plan.len().max(1);
             self.next = place + 1;
             self.plan.get(place).copied()
@@ -354,6 +377,31 @@ mod tests {
             let deg = motion.at(60.0).phi_rad.to_degrees();
             assert!((deg - end_deg).abs() < 1e-9, "{deg} for {end_deg}");
             motion = (0..).find_map(|_| examiner.tick()).unwrap();
+        }
+    }
+
+    /// Whether it is stiff, needs speed, or is healthy; also if it comes in the middle of the plan.
+    #[test]
+    fn in_a_blind_trial_every_knee_gets_the_same_plan() {
+        let scene = crepitus_scene::shipped::examination().unwrap();
+        let knee = |name: &str| (preset::find(name).unwrap().effect_settings(), false);
+        let plan_of = |name: &str| {
+            let mut examiner = Examiner::of(&scene).unwrap();
+            examiner.begin();
+            assert!(examiner.set_blind(true) && !examiner.set_blind(true));
+            examiner.go_on(Body::default());
+            assert!(!examiner.meet(&knee(name)), "{name}");
+            examiner.await_leg();
+            (examiner.first.clone(), examiner.plan.clone(), examiner)
+        };
+        let (first, plan, _) = plan_of("coarse");
+        assert!(plan.len() > 20, "{}", plan.len());
+        for name in ["mas-4-lead-pipe", "scats-3-clonus", "contracture-severe"] {
+            let (own_first, own, mut examiner) = plan_of(name);
+            assert_eq!((own_first, own), (first.clone(), plan.clone()), "{name}");
+            assert!(examiner.set_blind(false));
+            examiner.go_on(Body::default());
+            assert_ne!(examiner.plan, plan, "{name}");
         }
     }
 

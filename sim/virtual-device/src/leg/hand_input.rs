@@ -1,28 +1,31 @@
 //! Input of a hand that moves the leg, beside the protocol.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
-/// Input of a hand, which the leg looks at once a tick, and what the leg reports. All clones are one input, for any
-/// thread: each number stands for itself, so none waits for another.
+/// Input of a hand, which the leg looks at once a tick, and what the leg reports; also whether the knee is a secret that
+/// its examiner must not tell. All clones are one input, for any thread: each value stands for itself, so none waits for
+/// another.
 #[derive(Clone, Debug)]
-pub struct HandInput(Arc<Angles>);
+pub struct HandInput(Arc<State>);
 
-/// Angles, rad, as their bits; NaN is none.
+/// Angles, rad, as their bits, where NaN is none, and the secret.
 #[derive(Debug)]
-struct Angles {
+struct State {
     target: AtomicU64,
     hand: AtomicU64,
     shaft: AtomicU64,
+    is_blind: AtomicBool,
 }
 
 impl Default for HandInput {
     fn default() -> Self {
         let none = || AtomicU64::new(f64::NAN.to_bits());
-        Self(Arc::new(Angles {
+        Self(Arc::new(State {
             target: none(),
             hand: none(),
             shaft: AtomicU64::new(0),
+            is_blind: AtomicBool::new(false),
         }))
     }
 }
@@ -49,6 +52,16 @@ impl HandInput {
     /// Angle of the shaft that the encoder counts, rad.
     pub fn shaft_rad(&self) -> f64 {
         load(&self.0.shaft).unwrap_or_default()
+    }
+
+    /// Sets whether a trial is blind: then the examiner, if there is one, moves every knee alike.
+    pub fn set_blind(&self, is_blind: bool) {
+        self.0.is_blind.store(is_blind, Relaxed);
+    }
+
+    /// Returns whether a trial is blind.
+    pub fn is_blind(&self) -> bool {
+        self.0.is_blind.load(Relaxed)
     }
 
     /// Angle to which the hand moves, rad; `None` where it does not hold the leg.
@@ -92,5 +105,9 @@ mod tests {
         assert_eq!(leg.target_rad(), None);
         leg.report(None, 0.75);
         assert_eq!(input.hand_rad(), None);
+        for is_blind in [true, false] {
+            input.set_blind(is_blind);
+            assert_eq!(leg.is_blind(), is_blind);
+        }
     }
 }

@@ -107,6 +107,7 @@ impl Mover {
             self.target_rad = target_rad;
             self.follow_hand(target_rad, plant);
         }
+        self.heed_blind();
         let hand_rad = match &self.stage {
             Stage::Held(path) => Some(path.state().angle_rad),
             Stage::Led(_) | Stage::Moved => None,
@@ -136,14 +137,32 @@ impl Mover {
     }
 
     /// Tells the examiner, if there is one, which knee it is: its effects, and whether the imaginary object is on. For
-    /// another knee he or she stops, and begins another examination; at once, or once the leg is his or hers.
+    /// another knee he or she stops, and begins another examination, but in a blind trial.
     pub(super) fn examine(&mut self, effects: &EffectSettings, grates: bool) {
+        // A trial is blind before its knee comes.
+        self.heed_blind();
+        if let Some(examiner) = &mut self.examiner
+            && examiner.meet(&(*effects, grates))
+        {
+            self.examine_again();
+        }
+    }
+
+    /// Tells the examiner whether a trial is blind. Once that has changed, he or she begins another examination.
+    fn heed_blind(&mut self) {
+        let is_blind = self.input.is_blind();
+        if let Some(examiner) = &mut self.examiner
+            && examiner.set_blind(is_blind)
+        {
+            self.examine_again();
+        }
+    }
+
+    /// Lets the examiner choose another plan, and begin with it at once, or once the leg is his or hers.
+    fn examine_again(&mut self) {
         let Some(examiner) = &mut self.examiner else {
             return;
         };
-        if !examiner.meet(&(*effects, grates)) {
-            return;
-        }
         match self.stage {
             Stage::Led(_) => examiner.await_leg(),
             Stage::Moved => {

@@ -207,3 +207,21 @@ fn an_examiner_goes_on_from_where_a_hand_has_left_the_leg() {
     let [_, high] = ends_deg(&mut leg, 60_000);
     assert!((high - 75.0).abs() < 0.1, "{high}");
 }
+
+/// Their motion is seen.
+#[test]
+fn in_a_blind_trial_all_knees_are_moved_alike() {
+    let way = |name: &str| {
+        let mut leg = Leg::new(&shipped::examination().expect("it ships"));
+        leg.hand().set_blind(true);
+        ticks(&mut leg, 100);
+        let knee = preset::find(name).expect("it ships");
+        leg.examine(&knee.effect_settings(), false);
+        let next = |_: u32| {
+            ticks(&mut leg, 2_000);
+            leg.leg().angle_rad
+        };
+        (0..80).map(next).collect::<Vec<_>>()
+    };
+    assert_eq!(way("mas-4-lead-pipe"), way("scats-3-clonus"));
+}
