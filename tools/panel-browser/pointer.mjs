@@ -39,10 +39,19 @@ export async function sweep(page, from, to, speed = 60) {
   }
 }
 
+/** The angle of the hand as it is drawn, °; that of the leg where both are close. */
+const handOf = (page) =>
+  page.evaluate(() => {
+    const [ghost, leg] = [document.querySelector("#leg .ghost"), document.querySelector("#leg g")];
+    const drawn = ghost.getAttribute("visibility") === "visible" ? ghost : leg;
+    return Number(/rotate\((-?[\d.]+)/.exec(drawn.getAttribute("transform"))[1]);
+  });
+
 /** Grabs the leg, wherever it is; the returned function moves the hand to an angle of the leg, °, at a speed, °/s. */
 export async function takeLeg(page) {
-  let hand = await grab(page, 40);
-  // The pointer keeps its distance to the leg.
+  await grab(page, 40);
+  let hand = await handOf(page);
+  // The pointer keeps its distance to the hand.
   const ahead = 40 - hand;
   return async (to, speed) => {
     await sweep(page, hand + ahead, to + ahead, speed);
