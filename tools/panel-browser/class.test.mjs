@@ -90,6 +90,23 @@ test("two phones join, answer, reload and stop; each shows its own", async () =>
   assert.deepEqual(all, []);
 });
 
+test("a phone whose seat is gone gets the form, and nothing to explain", async () => {
+  const panel = await startPanel();
+  const phone = await openPage(panel.student, PHONE);
+  const name = phone.getByLabel("Your pseudonym");
+  await name.waitFor();
+  const seat = { name: "Quokka", key: "0123456789abcdef0123456789abcdef" };
+  await phone.evaluate((kept) => localStorage.setItem("seat", JSON.stringify(kept)), seat);
+  await phone.reload();
+  await name.waitFor();
+  assert.equal(await name.inputValue(), "Quokka");
+  assert.ok(!(await phone.locator("#message").isVisible()));
+  // Somebody who asks gets the reason.
+  await phone.getByRole("button", { name: "Join" }).click();
+  await phone.getByText("the class is closed").waitFor();
+  assert.deepEqual(phone.problems, []);
+});
+
 test("the remote steps through the lesson and shows the knee to nobody else", async () => {
   const panel = await startPanel();
   const remote = await openPage(panel.remote, PHONE);
