@@ -1,10 +1,12 @@
 // The device's own model under a simulated leg: WebAssembly, 20,000 steps a second. The exports are those of
 // `sim/knee/src/page.rs`.
 
+import { TICKS_HZ } from "../sound-law.js";
+
 /** Most steps at once. */
 const ROOM = 2048;
 /** Steps a millisecond. */
-export const TICKS_A_MS = 20;
+export const TICKS_A_MS = TICKS_HZ / 1000;
 
 const DEGREES = 180 / Math.PI;
 const COLUMNS = {

@@ -1,10 +1,10 @@
 // Bins of the page's own samples, in the columns of those of a frame, with the imaginary object besides.
 
 import { BINS_A_SECOND, MARK, RecentBins } from "../bins.js";
-import { TICKS_A_MS } from "./engine.js";
+import { TICKS_HZ } from "../sound-law.js";
 
-const SAMPLE_S = 0.001 / TICKS_A_MS;
-const SAMPLES = (1000 * TICKS_A_MS) / BINS_A_SECOND;
+const SAMPLE_S = 1 / TICKS_HZ;
+const SAMPLES = TICKS_HZ / BINS_A_SECOND;
 const DEGREES = 180 / Math.PI;
 
 function widen(low, high, at, value) {
