@@ -40,6 +40,26 @@ test("a constant is silence, and the rest of a quiet knee stays quiet", () => {
   assert.ok(largest(new SoundLaw().push(quiet)) < 1e-3);
 });
 
+test("the worklet begins with a lead, and of too many samples the oldest are left out", () => {
+  const script = readFileSync(join(import.meta.dirname, "../../host/panel/assets/sound-worklet.js"), "utf8");
+  let Player = null;
+  const run = new Function("registerProcessor", "AudioWorkletProcessor", script);
+  run((_, kind) => (Player = kind), class { port = {}; });
+  const player = new Player({ processorOptions: { lead: 4, most: 8 } });
+  const send = (...samples) => player.port.onmessage({ data: Float32Array.from(samples) });
+  const play = () => {
+    const out = new Float32Array(2);
+    player.process([], [[out]]);
+    return [...out];
+  };
+  send(1, 2, 3);
+  assert.deepEqual(play(), [0, 0]);
+  send(4);
+  assert.deepEqual([play(), play(), play()], [[1, 2], [3, 4], [0, 0]]);
+  send(1, 2, 3, 4, 5, 6, 7, 8, 9);
+  assert.deepEqual(play(), [6, 7]);
+});
+
 test("samples are those of a file of --wav", () => {
   const home = folder();
   const wav = join(home, "knee.wav");
