@@ -167,6 +167,30 @@ test("a killed server is said, and the page comes back", async () => {
   await page.getByText("Open the link that the program printed").waitFor();
 });
 
+test("a page that connects again still has its knees", async () => {
+  const panel = await startPanel();
+  const page = await openPage("about:blank");
+  const sockets = [];
+  await page.routeWebSocket(/\/ws$/, (socket) => {
+    const isFirst = sockets.push(socket) === 1;
+    const server = socket.connectToServer();
+    // The second time the list does not come behind the greeting.
+    server.onMessage((message) => {
+      if (isFirst || !String(message).startsWith('{"presets"')) socket.send(message);
+    });
+  });
+  await page.goto(panel.teacher);
+  await until(page, "the knees", () => document.querySelectorAll("#knee .cards > .card").length > 5);
+  await untilState(page, "disarmed");
+  const count = () => page.locator("#knee .cards > .card").count();
+  const before = await count();
+  await sockets[0].close();
+  await untilState(page, "connection-lost");
+  await untilState(page, "disarmed");
+  assert.equal(sockets.length, 2);
+  assert.equal(await count(), before);
+});
+
 test("a device that is killed or unplugged is said, and found again", async () => {
   const home = folder();
   const env = { XDG_RUNTIME_DIR: home };
