@@ -359,12 +359,15 @@ mod tests {
         set(&mut page, "crepitus.render", 1.0);
         assert_eq!(page.commit(), Ok(()));
         page.advance(200);
+        let stiffness = f32::from_f64(Values::default().get(id::STIFFNESS).unwrap());
         let mut ticks = [0; 3];
         for step in 1_u8..=100 {
             bend(&mut page, 0.5 * f32::from(step), 10);
             let columns = page.columns();
             for at in 0..=LAST {
                 ticks[columns.phase[at] as usize] += 1;
+                let object_nm = stiffness * columns.object_rad[at];
+                assert!((columns.spring_nm[at] - object_nm).abs() < 1e-5);
                 if columns.phase[at] == 1 {
                     // In stick the spring is what resists.
                     let off_nm = columns.spring_nm[at] - columns.torque_nm[at];
@@ -461,11 +464,14 @@ mod tests {
         assert!(falling_rad > 0.2, "{falling_rad}");
         let off_rad = page.columns().hand_rad[LAST] - falling_rad;
         assert!(off_rad.abs() < 1e-4, "{off_rad}");
-        // The hand begins where the leg is, and brings it to where it wants.
+        // The hand begins where the leg is, as fast, and brings it to where it wants.
+        let falling_rad_s = page.columns().speed_rad_s[LAST];
         page.hand(2.0, true);
-        page.advance(1);
-        let off_rad = page.columns().hand_rad[0] - falling_rad;
-        assert!(off_rad.abs() < 1e-3, "{off_rad}");
+        page.advance(2);
+        let [first_rad, next_rad, ..] = page.columns().hand_rad;
+        assert!((first_rad - falling_rad).abs() < 1e-3, "{first_rad}");
+        let share = (next_rad - first_rad) / (5e-5 * falling_rad_s);
+        assert!((share - 1.0).abs() < 0.2, "{share}");
         bend(&mut page, 20.0, 2_000);
         let angle_deg = page.columns().angle_rad[LAST].to_degrees();
         assert!((angle_deg - 20.0).abs() < 0.1, "{angle_deg}");
