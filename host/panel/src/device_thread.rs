@@ -56,6 +56,7 @@ use notes::Note;
 use recording::Recorded;
 use serde_json::Value;
 use status::Speed;
+use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -108,6 +109,8 @@ pub(crate) struct DeviceThread<'p, T> {
     program: &'p dyn Program<T>,
     shared: Arc<Shared>,
     inbox: Receiver<Order>,
+    /// Orders that have been received, and not executed yet.
+    waiting: VecDeque<Order>,
     /// Folder in which sessions are stored.
     sessions: Option<PathBuf>,
     samples: Samples,
@@ -177,6 +180,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             program,
             shared,
             inbox,
+            waiting: VecDeque::new(),
             sessions,
             samples: Samples::default(),
             in_force: None,

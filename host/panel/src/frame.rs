@@ -17,7 +17,6 @@ use crepitus_plant::Extremes;
 const VERSION: u8 = 2;
 
 /// Bytes of the header.
-#[cfg(test)]
 pub(crate) const HEADER: usize = 40;
 
 /// Bytes of a bin.
@@ -81,7 +80,7 @@ pub(crate) fn samples(header: &Header, torques_nm: &[f32]) -> Bytes {
 fn begun(header: &Header, parts: usize, bytes: usize) -> (usize, Vec<u8>) {
     let count = u16::try_from(parts).unwrap_or(u16::MAX);
     let masks = header.masks;
-    let mut out = Vec::with_capacity(40 + parts * bytes);
+    let mut out = Vec::with_capacity(HEADER + parts * bytes);
     out.extend([VERSION, header.kind as u8]);
     out.extend(count.to_le_bytes());
     out.extend(header.number.to_le_bytes());

@@ -107,6 +107,11 @@ mod tests {
         requests.put(request(-1.0));
         let at_last = begun + Duration::from_secs(1);
         assert_eq!(requests.take(at_last), Some(request(-1.0)));
+        // One that comes early is not lost.
+        requests.put(request(-2.0));
+        assert_eq!(requests.take(at_last + LEAST_INTERVAL / 4), None);
+        let later = at_last + LEAST_INTERVAL;
+        assert_eq!(requests.take(later), Some(request(-2.0)));
     }
 
     #[test]

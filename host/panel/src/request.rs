@@ -374,16 +374,25 @@ mod tests {
     /// Late, an order to end torque is harmless, and one that can give some is not.
     #[test]
     fn what_gives_torque_expires_and_what_ends_it_does_not() {
-        for request in [
-            Request::Arm,
-            Request::Take,
-            Request::Reset,
-            Request::LessonStart,
-        ] {
-            assert!(request.expires(), "{request:?}");
-        }
-        for request in [Request::Stop, Request::Disarm, Request::Release] {
-            assert!(!request.expires(), "{request:?}");
+        let expiring = [
+            "take",
+            "zero",
+            "arm",
+            "clear-fault",
+            "apply",
+            "set",
+            "reset",
+            "save",
+            "lesson-begin",
+            "lesson-start",
+            "lesson-next",
+            "lesson-resume",
+            "severity",
+        ];
+        for text in ALL {
+            let name = text.split('"').nth(3).unwrap();
+            let request = request(&numbered(text)).expect(text);
+            assert_eq!(request.expires(), expiring.contains(&name), "{name}");
         }
     }
 
@@ -426,12 +435,17 @@ mod tests {
         r#"{"do":"trace","recording":0,"from_s":0,"to_s":1,"points":1}"#,
     ];
 
+    /// The text of a request with a number, as a page sends it.
+    fn numbered(text: &str) -> String {
+        text.replacen('{', r#"{"id":1,"#, 1)
+    }
+
     /// What a role can ask for at all, whoever has control.
     #[test]
     fn each_role_has_the_least_rights() {
         let may = |role: Role| -> Vec<&str> {
             let requests = ALL.iter().map(|text| {
-                let request = request(&text.replacen('{', r#"{"id":1,"#, 1));
+                let request = request(&numbered(text));
                 (request.expect(text).right(), text)
             });
             requests

@@ -47,6 +47,21 @@ fn a_pseudonym_belongs_to_one_phone() {
     assert_eq!(names(&class), ["Zoë 2"]);
 }
 
+/// One that can be guessed, such as an empty one, would give the seat to the next phone that sends it.
+#[test]
+fn a_key_that_is_none_is_replaced() {
+    for given in ["", "x", "0123456789ABCDEF0123456789ABCDEF"] {
+        let mut class = open();
+        let (_, key) = join(&mut class, 1, "Ada", Some(given)).unwrap();
+        assert!(is_secret(&key), "{key}");
+        assert!(join(&mut class, 2, "Ada", Some(given)).is_err());
+        // Also where the seat waits for a phone.
+        class.free("Ada", true);
+        let (_, key) = join(&mut class, 3, "Ada", Some(given)).unwrap();
+        assert!(is_secret(&key), "{key}");
+    }
+}
+
 #[test]
 fn names_that_are_no_pseudonyms_are_rejected() {
     let mut class = open();

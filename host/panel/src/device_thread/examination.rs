@@ -2,6 +2,7 @@
 
 use super::DeviceThread;
 use super::hand::Hand;
+use super::lessons::Held;
 use crepitus_client::Transport;
 use crepitus_knee::Examination;
 use crepitus_knee::examination::{Finding, Measure, Step};
@@ -12,6 +13,8 @@ use std::time::Instant;
 /// The examination under way.
 pub(super) struct Examined {
     pub(super) examination: Examination,
+    /// That of a person who has let go of the leg, while a simulated examiner moves it.
+    left: Option<Examination>,
     /// Whether a person moves the leg.
     pub(super) by_person: bool,
     pub(super) published_at: Instant,
@@ -22,9 +25,19 @@ impl Examined {
     pub(super) fn new(by_person: bool, now: Instant) -> Self {
         Self {
             examination: Examination::default(),
+            left: None,
             by_person,
             published_at: now,
         }
+    }
+
+    /// Goes on with the examination of a person who takes the leg again, and begins that of another mover.
+    fn change_mover(&mut self, by_person: bool, values: &Values) {
+        self.by_person = by_person;
+        let known = self.left.take().filter(|_| by_person);
+        let next = known.unwrap_or_else(|| examination_of(values));
+        let before = std::mem::replace(&mut self.examination, next);
+        self.left = (!by_person).then_some(before);
     }
 }
 
@@ -35,12 +48,12 @@ impl<T: Transport> DeviceThread<'_, T> {
         self.hand.as_ref().is_none_or(Hand::has_leg)
     }
 
-    /// Begins again if somebody else moves the leg now; returns whether it is a person.
+    /// Changes the examination if somebody else moves the leg now; returns whether it is a person.
     pub(super) fn notice_mover(&mut self) -> bool {
         let by_person = self.person_moves();
         if by_person != self.examined.by_person {
-            self.examined.by_person = by_person;
-            self.restart_examination();
+            self.examined.change_mover(by_person, &self.values);
+            self.publish_examination();
             self.publish_target();
         }
         by_person
@@ -49,6 +62,23 @@ impl<T: Transport> DeviceThread<'_, T> {
     /// Begins the examination of the knee that is on the device.
     pub(super) fn restart_examination(&mut self) {
         self.examined.examination = examination_of(&self.values);
+        self.examined.left = None;
+        self.publish_examination();
+    }
+
+    /// Keeps what was missed of a knee that an answer has revealed: it may be felt again, beside a healthy one. What a
+    /// person has examined counts, or else what the simulated examiner has.
+    pub(super) fn keep_findings(&mut self) {
+        let examined = &self.examined;
+        let left = examined.left.as_ref();
+        let examination = left.unwrap_or(&examined.examination);
+        let by_person = examined.by_person || left.is_some();
+        let findings: Vec<_> = examination.findings().map(shown).collect();
+        if let Some(held) = &mut self.lesson {
+            let trial = held.lesson().trial();
+            let kept = json!({ "trial": trial, "by_person": by_person, "findings": findings });
+            held.keep_findings(kept);
+        }
         self.publish_examination();
     }
 
@@ -85,6 +115,7 @@ impl<T: Transport> DeviceThread<'_, T> {
             "measures": measures,
             "steps": steps,
             "findings": findings.map(Value::Array),
+            "of_answer": self.lesson.as_ref().and_then(Held::findings),
         } });
         self.publish(|latest| &mut latest.examination, &message);
     }

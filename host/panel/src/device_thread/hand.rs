@@ -54,6 +54,11 @@ impl Hand {
         self.input.hand_rad().is_some()
     }
 
+    /// Tells the examiner of the simulated leg whether the knee is hidden.
+    pub(super) fn set_blind(&self, is_blind: bool) {
+        self.input.set_blind(is_blind);
+    }
+
     /// Angle of the hand from the device's zero, rad; `None` while it does not have the leg.
     pub(super) fn angle_rad(&self) -> Option<f64> {
         Some(self.input.hand_rad()? - self.zero_rad?)
@@ -159,6 +164,7 @@ mod tests {
         // In motion the sample is old.
         assert_eq!(zero_rad(-0.26, 2.0), Some(0.25));
         assert_eq!(zero_rad(-0.26, 0.01), Some(0.26));
+        assert_eq!(zero_rad(-0.27, -2.0), Some(0.26));
         // Another zero is one in motion, too.
         assert_eq!(zero_rad(-0.5, 2.0), Some(0.5));
     }

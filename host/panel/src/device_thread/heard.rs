@@ -29,11 +29,14 @@ impl<T: Transport> DeviceThread<'_, T> {
         self.shared.samples.receiver_count() > 0
     }
 
-    /// Sends the torques since the last frame to pages that listen; none in a trial that hides them.
+    /// Sends the torques since the last frame to pages that listen; none in a trial that hides them, but of a simulated
+    /// leg. A brace is heard and felt, blind or not: whoever moves a leg by pointer hears it, or has nothing that tells
+    /// a slight crepitus.
     pub(super) fn publish_samples(&mut self) {
         let heard = std::mem::take(&mut self.heard);
         let masks = self.masks();
-        if heard.torques_nm.is_empty() || masks.torque {
+        let is_hidden = masks.torque && self.hand.is_none();
+        if heard.torques_nm.is_empty() || is_hidden {
             return;
         }
         let header = Header {

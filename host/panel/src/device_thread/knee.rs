@@ -182,7 +182,11 @@ impl<T: Transport> DeviceThread<'_, T> {
     }
 
     pub(super) fn publish_parameters(&mut self) {
-        let message = if self.is_hidden() {
+        let is_hidden = self.is_hidden();
+        if let Some(hand) = &self.hand {
+            hand.set_blind(is_hidden);
+        }
+        let message = if is_hidden {
             json!({ "hidden": true })
         } else {
             let values: Vec<_> = self

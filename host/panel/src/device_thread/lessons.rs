@@ -30,6 +30,8 @@ pub(super) struct Held {
     /// Time at which the healthy knee was applied between two trials, s; none while that of
     /// a trial is on the device.
     left_s: Option<f64>,
+    /// Findings of the current trial, as pages get them, once answers have revealed its knee.
+    findings: Option<Value>,
     /// Keys of the students' phones, as they are stored.
     keys: Keys,
 }
@@ -46,6 +48,7 @@ impl Held {
             samples: 0,
             under_torque: 0,
             left_s: None,
+            findings: None,
             keys: Keys::new(),
         }
     }
@@ -85,6 +88,14 @@ impl Held {
             self.samples += 1;
             self.under_torque += u64::from(is_driven);
         }
+    }
+
+    pub(super) fn findings(&self) -> Option<&Value> {
+        self.findings.as_ref()
+    }
+
+    pub(super) fn keep_findings(&mut self, findings: Value) {
+        self.findings = Some(findings);
     }
 
     /// Share of the current trial's samples with torque.
@@ -172,7 +183,7 @@ impl<T: Transport> DeviceThread<'_, T> {
         let trial = lesson.trial();
         let target = lesson.view(None).target;
         (held.began_s, held.left_s) = (now_s, None);
-        (held.samples, held.under_torque) = (0, 0);
+        (held.samples, held.under_torque, held.findings) = (0, 0, None);
         self.publish_parameters();
         let mut begun = self.record_trial(trial);
         if begun.is_ok() {
@@ -185,6 +196,7 @@ impl<T: Transport> DeviceThread<'_, T> {
             if let Some(held) = &mut self.lesson {
                 (held.session.lesson, held.left_s) = before;
             }
+            self.publish_parameters();
             return Err(error);
         }
         if let Some(target) = target.and_then(|name| Target::find(&name)) {
@@ -254,6 +266,9 @@ impl<T: Transport> DeviceThread<'_, T> {
         lesson.set_torque_share(share);
         let answered = lesson.answer(student, disorder, level, confidence, now_s);
         answered.map_err(|error| error.to_string())?;
+        if !lesson.is_hidden() {
+            self.keep_findings();
+        }
         Ok(Value::Null)
     }
 

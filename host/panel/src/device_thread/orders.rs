@@ -1,30 +1,33 @@
 //! Orders of pages: each is checked when its turn comes, not when it was queued.
 
-use super::DeviceThread;
 use super::torque_end::Cause;
+use super::{DeviceThread, POLL};
 use crate::control::{Holder, Page};
 use crate::request::{Request, Right};
 use crate::shared::{Order, Outcome};
 use crate::tokens::Role;
 use crepitus_client::{Client, Transport};
 use serde_json::Value;
-use std::collections::VecDeque;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Longest time in the queue of an order that [expires](Request::expires): the device keeps this
 /// thread busy for less, while it answers.
 const LONGEST_QUEUED: Duration = Duration::from_secs(5);
 
+/// Most orders of a turn: so many in its time are a flood of stops, of which the first has ended torque.
+const MOST_ORDERS: u32 = 1_000;
+
 impl<T: Transport> DeviceThread<'_, T> {
-    /// Executes what pages have ordered: a stop first, also one that comes meanwhile.
+    /// Executes what pages have ordered, for no longer than a poll waits: however much they order, the page is
+    /// supervised, and the device has its turn. A stop goes first, also one that comes meanwhile, and does not wait for
+    /// the next turn.
     pub(super) fn take_orders(&mut self) {
         let mut is_unstored = false;
-        let mut waiting = VecDeque::new();
-        loop {
-            waiting.extend(self.inbox.try_iter());
-            let stop = (waiting.iter()).position(|order: &Order| order.request == Request::Stop);
-            let Some(order) = waiting.remove(stop.unwrap_or(0)) else {
+        let begun = Instant::now();
+        for nth in 0..MOST_ORDERS {
+            let is_over = nth > 0 && begun.elapsed() >= POLL;
+            let Some(order) = self.next_order(is_over) else {
                 return;
             };
             let outcome = self.check(&order).and_then(|()| {
@@ -60,6 +63,16 @@ impl<T: Transport> DeviceThread<'_, T> {
             }
             // The page may be gone.
             let _ = order.reply.send(outcome);
+        }
+    }
+
+    /// The order to execute next; once the turn is over, only a stop.
+    fn next_order(&mut self, is_over: bool) -> Option<Order> {
+        self.waiting.extend(self.inbox.try_iter());
+        let mut waiting = self.waiting.iter();
+        match waiting.position(|order| order.request == Request::Stop) {
+            None if is_over => None,
+            stop => self.waiting.remove(stop.unwrap_or(0)),
         }
     }
 

@@ -1,5 +1,6 @@
 mod examination;
 mod lessons;
+mod orders;
 
 use super::{DeviceThread, Program};
 use crate::control::{Holder, Page};
@@ -255,12 +256,15 @@ fn a_preset_is_saved_under_a_name_made_of_its_title() {
     }
 }
 
-/// Returns whether pages see neither the parameters nor the curves; otherwise they see both.
-fn hides(device_thread: &DeviceThread<'_, Flood>) -> bool {
-    let latest = device_thread.shared.latest.borrow();
-    let is_hidden = latest.parameters.contains("hidden");
+/// Returns whether pages see neither the parameters nor the curves, nor what the examiner does with this knee; otherwise
+/// they see all.
+fn hides(device_thread: &mut DeviceThread<'_, Flood>) -> bool {
+    let parameters = device_thread.shared.latest.borrow().parameters.clone();
+    let is_hidden = parameters.contains("hidden");
     let Masks { torque, states } = device_thread.masks();
-    assert_eq!([torque, states], [is_hidden; 2]);
+    let hand = device_thread.client.transport_mut().device.hand();
+    let is_blind = hand.is_some_and(|hand| hand.is_blind());
+    assert_eq!([torque, states, is_blind], [is_hidden; 3]);
     is_hidden
 }
 
@@ -281,18 +285,18 @@ fn a_knee_that_was_left_is_hidden_until_its_torque_has_ended() {
     device_thread.begin_lesson(&lesson).expect("a lesson");
     device_thread.start_trial().expect("a trial");
     device_thread.step();
-    assert!(hides(&device_thread));
+    assert!(hides(&mut device_thread));
     device_thread.next_trial().expect("the next one");
     let left_s = device_thread.now_s;
     while device_thread.now_s < left_s + 0.5 {
         device_thread.step();
         let later_s = device_thread.now_s - left_s;
-        assert!(hides(&device_thread), "{later_s} s later");
+        assert!(hides(&mut device_thread), "{later_s} s later");
     }
     while device_thread.now_s < left_s + 2.0 {
         device_thread.step();
     }
-    assert!(!hides(&device_thread));
+    assert!(!hides(&mut device_thread));
 }
 
 /// Queues a request as the connection of a page does.
@@ -302,10 +306,26 @@ fn order(shared: &Shared, page: Page, request: FromPage) -> Receiver<Outcome> {
     shared.order(request, page, Role::Teacher).expect("a queue")
 }
 
+/// Has all orders executed that wait.
+fn take_all(device_thread: &mut DeviceThread<'_, Flood>) {
+    device_thread.take_orders();
+    while !device_thread.waiting.is_empty() {
+        device_thread.take_orders();
+    }
+}
+
+/// Takes as many steps as they need.
+fn step_all(device_thread: &mut DeviceThread<'_, Flood>) {
+    device_thread.step();
+    while !device_thread.waiting.is_empty() {
+        device_thread.step();
+    }
+}
+
 /// Has a request executed.
 fn done(device_thread: &mut DeviceThread<'_, Flood>, page: Page, request: FromPage) -> Outcome {
     let mut outcome = order(&device_thread.shared, page, request);
-    device_thread.take_orders();
+    take_all(device_thread);
     outcome.try_recv().expect("an outcome")
 }
 
@@ -334,9 +354,9 @@ fn a_take_over_never_ends_armed() {
             .collect();
         let mut taken = order(&shared, new, FromPage::Take);
         late.extend((0..round % 4).map(|_| order(&shared, old, FromPage::Arm)));
-        device_thread.step();
+        step_all(&mut device_thread);
         late.push(order(&shared, old, FromPage::Arm));
-        device_thread.step();
+        step_all(&mut device_thread);
         assert_eq!(taken.try_recv(), Ok(Ok(Value::Null)));
         late.append(&mut during.lock().expect("a list"));
         assert!(late.len() > 15, "{} orders in round {round}", late.len());
@@ -369,7 +389,7 @@ fn the_last_of_two_take_overs_does_not_inherit_torque() {
     ] {
         drop(order(&shared, request.0, request.1));
     }
-    device_thread.step();
+    step_all(&mut device_thread);
     assert!(!device_thread.client.is_armed());
     assert_eq!(shared.control.holder(), Holder::Page(second));
 }
@@ -383,7 +403,7 @@ fn a_page_that_goes_while_it_takes_control_has_none() {
     let page = shared.control.page();
     drop(order(&shared, page, FromPage::Take));
     drop(shared.leave(page, Role::Teacher));
-    device_thread.step();
+    step_all(&mut device_thread);
     assert_eq!(shared.control.holder(), Holder::Nobody);
 }
 
@@ -444,7 +464,7 @@ fn a_stop_goes_before_what_waits_and_nothing_from_before_it_arms() {
     let stop = || drop(shared.order(FromPage::Stop, viewer, Role::Viewer));
     let mut armed = order(&shared, page, FromPage::Arm);
     stop();
-    device_thread.take_orders();
+    take_all(&mut device_thread);
     let outcome = armed.try_recv().expect("an outcome");
     assert!(outcome.unwrap_err().contains("STOP was pressed"));
     assert!(!device_thread.client.is_armed());
@@ -453,7 +473,7 @@ fn a_stop_goes_before_what_waits_and_nothing_from_before_it_arms() {
     // With torque the zero would be refused.
     let mut zeroed = order(&shared, page, FromPage::Zero);
     stop();
-    device_thread.take_orders();
+    take_all(&mut device_thread);
     assert_eq!(zeroed.try_recv(), Ok(Ok(Value::Null)));
     assert!(!device_thread.client.is_armed());
 }
