@@ -144,6 +144,10 @@ fn a_student_answers_and_stops_and_nothing_else() {
     }
     let other = json!({ "student": "Quokka", "disorder": "clonus", "confidence": 1 });
     assert!(phone.ask("lesson-answer", other).is_err());
+    // Nor does it hear the knee.
+    phone.send(r#"{"listen":true}"#);
+    phone.go_on(Duration::from_millis(300));
+    assert!(phone.frames.is_empty());
     page.arm();
     phone.until_state("armed");
     phone.ask("stop", json!({})).unwrap();

@@ -77,7 +77,12 @@ mod tests {
         ] {
             let command = panel(folder);
             assert!(Cli::try_parse_from(&command).is_ok(), "{command:?}");
-            assert_eq!(command.len() == 5, stores, "{command:?}");
+            assert_eq!(command[..3], ["crepitus", "panel", "--or-sim"]);
+            let stored = folder.filter(|_| stores).map(|folder| {
+                let lessons = folder.join(LESSONS).into_os_string();
+                vec![OsString::from("--sessions"), lessons]
+            });
+            assert_eq!(command[3..], stored.unwrap_or_default());
         }
         assert!(home.path().join(LESSONS).is_dir());
     }

@@ -74,7 +74,15 @@ mod tests {
 
     #[test]
     fn a_device_of_windows_is_no_file() {
-        for reserved in ["NUL", "Aux.toml", "com1", "LPT9.csv", "com²", "prn "] {
+        for reserved in [
+            "NUL",
+            "Aux.toml",
+            "nul.tar.gz",
+            "com1",
+            "LPT9.csv",
+            "com²",
+            "prn ",
+        ] {
             assert!(is_reserved(reserved), "{reserved}");
         }
         for free in ["", "console", "com", "com0", "com10", "my con"] {
