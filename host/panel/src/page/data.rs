@@ -138,7 +138,9 @@ fn ids() -> Map<String, Value> {
 /// Defaults of a brace by name.
 fn brace() -> Map<String, Value> {
     let values = Values::default();
-    let named = OF_BRACE.iter().filter_map(|name| Some((name, find(name)?.0)));
+    let named = OF_BRACE
+        .iter()
+        .filter_map(|name| Some((name, find(name)?.0)));
     named
         .map(|(name, id)| ((*name).to_owned(), json!(values.get(id))))
         .collect()
