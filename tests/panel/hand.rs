@@ -49,12 +49,12 @@ fn move_hand(page: &mut Page, deg: f32, holds: bool) {
     page.send(&json!({ "hand": deg, "holds": holds }).to_string());
 }
 
-/// Moves the hand there and waits until the leg is there, too.
+/// Moves the hand there and waits until the leg is there, too: within the 7° by which the most rigid knee lags.
 fn bring(page: &mut Page, deg: f32) {
     move_hand(page, deg, true);
     page.until("the leg", |page| {
-        let there = |angle: f32| (angle - deg).abs() < 2.0;
-        newest(page).is_some_and(|seen| there(seen.leg) && there(seen.hand))
+        let there = |angle: f32, within: f32| (angle - deg).abs() < within;
+        newest(page).is_some_and(|seen| there(seen.leg, 8.0) && there(seen.hand, 0.5))
     });
 }
 
@@ -76,10 +76,11 @@ fn a_hand_moves_the_leg_and_gives_it_back() {
         bring(&mut page, deg);
     }
     // What is said once holds.
-    page.frames.clear();
+    forget(&mut page);
     page.go_on(Duration::from_millis(2_500));
-    let mut legs = seen(&page).into_iter().map(|seen| seen.leg);
-    assert!(legs.all(|leg| (leg - 10.0).abs() < 2.0));
+    for seen in seen(&page) {
+        assert!((seen.leg - 10.0).abs() < 2.0, "{}°", seen.leg);
+    }
     // Beyond the range of a brace is its end.
     for (asked, reached) in [(1e9, 125.0), (-1e9, -5.0)] {
         move_hand(&mut page, asked, true);

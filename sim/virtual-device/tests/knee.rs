@@ -45,7 +45,7 @@ struct Followed {
     host: Host,
     pipeline: Pipeline,
     revision: Revision,
-    /// What the pipeline has rendered, by tick, until the telemetry of the drive arrives.
+    /// Torque that the pipeline has rendered, by tick, until the telemetry of the drive arrives.
     ours: BTreeMap<u64, Rendered>,
     compared: u64,
 }

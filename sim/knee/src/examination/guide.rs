@@ -67,7 +67,7 @@ impl Outcome {
         }
     }
 
-    /// What was reached, and what it takes, as far as there are numbers.
+    /// Numbers of what was reached and of what it takes, as far as there are any.
     pub const fn numbers(&self) -> [Option<f64>; 2] {
         match *self {
             Self::Shown | Self::NotMoved => [None, None],
@@ -155,6 +155,13 @@ impl Progress {
         let sense = self.sign.sense;
         let at_deg = sense * sample.angle_rad.to_degrees();
         let deg_s = sense * sample.omega_rad_s.to_degrees();
+        // A leg that begins beyond an end has not met it.
+        if let Rule::Reach { angle_deg } = self.sign.rule
+            && self.ends_deg.is_none()
+            && at_deg >= sense * angle_deg
+        {
+            return;
+        }
         let [nearest_deg, furthest_deg] = self.ends_deg.unwrap_or([at_deg; 2]);
         self.ends_deg = Some([nearest_deg.min(at_deg), furthest_deg.max(at_deg)]);
         let last_deg = self.last_deg.replace(at_deg).unwrap_or(at_deg);
@@ -371,5 +378,20 @@ mod tests {
         let [reached, needed] = short.numbers().map(Option::unwrap);
         assert_eq!(short.name(), "too-short");
         assert!((reached - 95.0).abs() < 0.1 && needed == 106.0);
+    }
+
+    /// A straight leg is beyond an end of 20° in extension, and is so again when it comes back.
+    #[test]
+    fn a_leg_that_begins_beyond_an_end_has_not_met_it() {
+        let effects = EffectSettings {
+            range_limit: Some(RangeLimitSettings {
+                extension_limit_deg: 20.0,
+                flexion_limit_deg: 135.0,
+                ..RangeLimitSettings::default()
+            }),
+            ..EffectSettings::default()
+        };
+        assert_eq!(outcome(&effects, &[[12.0, 30.0, 0.0]]), Outcome::NotMoved);
+        assert_eq!(outcome(&effects, &[[80.0, 30.0, 0.0]]), Outcome::Shown);
     }
 }
