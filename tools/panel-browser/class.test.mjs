@@ -85,7 +85,7 @@ test("two phones join, answer, reload and stop; each shows its own", async () =>
     await phone.locator(".answers .tag", { hasText: /does not count/ }).waitFor();
     assert.deepEqual(await problemsOf(phone), [], "judged");
   }
-  await wall.getByText(/This knee:/).waitFor();
+  await wall.locator("#wall").getByText(/This knee:/).waitFor();
   const all = [page, wall, quokka, wombat, early].flatMap((shown) => shown.problems);
   assert.deepEqual(all, []);
 });

@@ -21,7 +21,7 @@ const offAfter = async (page, began) => {
 test("a wrong key shows nothing", async () => {
   const panel = await startPanel();
   const page = await openPage(panel.teacher.replace(/#.*/, "#0123456789abcdef0123456789abcdef"));
-  await page.getByText("Open the link that the program printed").waitFor();
+  await page.locator("#next", { hasText: "Open the link that the program printed" }).waitFor();
   assert.equal(await page.evaluate(() => window.crepitusStats.frames), 0);
 });
 
@@ -164,7 +164,7 @@ test("a killed server is said, and the page comes back", async () => {
   // Another run has another key: the page says what to do.
   await startPanel(["--device", "knee", "--port", port], env);
   await untilState(page, "refused");
-  await page.getByText("Open the link that the program printed").waitFor();
+  await page.locator("#next", { hasText: "Open the link that the program printed" }).waitFor();
 });
 
 test("a page that connects again still has its knees", async () => {
