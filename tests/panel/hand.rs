@@ -70,7 +70,7 @@ fn a_hand_moves_the_leg_and_gives_it_back() {
     let panel = Panel::new(&SIM);
     let mut page = panel.controlling();
     let reach = &page.latest["hello"]["source"]["hand"];
-    assert_eq!(*reach, json!({ "least_deg": -5.0, "most_deg": 125.0 }));
+    assert_eq!(*reach, json!({ "least_deg": -4.0, "most_deg": 124.0 }));
     until_free(&mut page);
     for deg in [40.0, 95.0, 10.0] {
         bring(&mut page, deg);
@@ -81,8 +81,8 @@ fn a_hand_moves_the_leg_and_gives_it_back() {
     for seen in seen(&page) {
         assert!((seen.leg - 10.0).abs() < 2.0, "{}°", seen.leg);
     }
-    // Beyond the range of a brace is its end.
-    for (asked, reached) in [(1e9, 125.0), (-1e9, -5.0)] {
+    // Beyond what a brace may be armed at is its end.
+    for (asked, reached) in [(1e9, 124.0), (-1e9, -4.0)] {
         move_hand(&mut page, asked, true);
         page.until("the end", |page| {
             newest(page).is_some_and(|seen| (seen.hand - reached).abs() < 0.1)

@@ -143,7 +143,8 @@ export async function until(page, what, condition, argument, timeout = 20_000) {
   const last = Date.now() + timeout;
   while (!(await page.evaluate(condition, argument).catch(() => false))) {
     if (Date.now() > last) {
-      throw new Error(`waited for ${what}; state ${await page.locator("#state").textContent()}`);
+      const said = (id) => page.locator(id).textContent({ timeout: 1000 }).catch(() => "nothing");
+      throw new Error(`waited for ${what}; state ${await said("#state")}, message ${await said("#message")}`);
     }
     await new Promise((resolve) => setTimeout(resolve, 10));
   }

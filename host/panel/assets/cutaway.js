@@ -75,7 +75,7 @@ export function makeCutaway(host) {
   );
   const drawing = svg(
     "svg",
-    { viewBox: "0 0 300 212", role: "img" },
+    { viewBox: "0 0 300 212", role: "img", "aria-label": legText(NaN, NaN) },
     svg("path", { class: "bench", d: "M6 100 H112 V204" }),
     svg("path", { class: "skin", d: THIGH }),
     svg("path", { class: "straight", d: `M${KNEE.x} ${KNEE.y} H292` }),

@@ -19,7 +19,11 @@ function likelyDisorder() {
   return similar?.disorder ?? "";
 }
 
-const named = (title) => presets().find((preset) => preset.own && preset.title === title.trim());
+/** The saved knee of this title; of several the first, whose name has no number. */
+function named(title) {
+  const same = presets().filter((preset) => preset.own && preset.title === title.trim());
+  return same.sort((a, b) => a.name.length - b.name.length)[0];
+}
 
 /** Asks for a name, and saves the knee; its file is named by the program. */
 export async function saveKnee() {

@@ -52,20 +52,25 @@ impl HandRequests {
     }
 }
 
-/// The nearest angle that a hand can move the knee to, °: within the range of a brace.
+/// Least distance of a hand from the ends of a brace's range, °: beyond them a leg is not armed.
+const INSIDE_DEG: f64 = 1.0;
+
+/// Angles between which a hand moves the knee, °.
+fn ends_deg() -> [f64; 2] {
+    let range = RangeSettings::default();
+    [range.least_deg + INSIDE_DEG, range.most_deg - INSIDE_DEG]
+}
+
+/// The nearest angle that a hand can move the knee to, °.
 pub(crate) fn reachable_deg(angle_deg: f64) -> f64 {
-    let RangeSettings {
-        least_deg,
-        most_deg,
-        ..
-    } = RangeSettings::default();
+    let [least_deg, most_deg] = ends_deg();
     angle_deg.max(least_deg).min(most_deg)
 }
 
 /// These angles for a page.
 pub(crate) fn reach() -> Value {
-    let range = RangeSettings::default();
-    json!({ "least_deg": range.least_deg, "most_deg": range.most_deg })
+    let [least_deg, most_deg] = ends_deg();
+    json!({ "least_deg": least_deg, "most_deg": most_deg })
 }
 
 #[cfg(test)]
@@ -118,12 +123,12 @@ mod tests {
     fn a_hand_stays_within_the_range_of_a_brace() {
         for (asked, reached) in [
             (40.0, 40.0),
-            (1e9, 125.0),
-            (-1e9, -5.0),
-            (f64::INFINITY, 125.0),
+            (1e9, 124.0),
+            (-1e9, -4.0),
+            (f64::INFINITY, 124.0),
         ] {
             assert_eq!(reachable_deg(asked), reached);
         }
-        assert_eq!(reach(), json!({ "least_deg": -5.0, "most_deg": 125.0 }));
+        assert_eq!(reach(), json!({ "least_deg": -4.0, "most_deg": 124.0 }));
     }
 }
