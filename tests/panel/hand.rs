@@ -75,12 +75,16 @@ fn a_hand_moves_the_leg_and_gives_it_back() {
     for deg in [40.0, 95.0, 10.0] {
         bring(&mut page, deg);
     }
-    // What is said once holds.
+    // What is said once holds: the leg rests where gear and crepitus hold it back.
     forget(&mut page);
     page.go_on(Duration::from_millis(2_500));
-    for seen in seen(&page) {
-        assert!((seen.leg - 10.0).abs() < 2.0, "{}°", seen.leg);
-    }
+    let legs: Vec<_> = seen(&page).iter().map(|seen| seen.leg).collect();
+    let [lowest, highest] =
+        [f32::min, f32::max].map(|end| legs.iter().copied().reduce(end).unwrap());
+    assert!(
+        lowest > 5.0 && highest < 15.0 && highest - lowest < 0.2,
+        "{lowest}° to {highest}°"
+    );
     // Beyond what a brace may be armed at is its end.
     for (asked, reached) in [(1e9, 124.0), (-1e9, -4.0)] {
         move_hand(&mut page, asked, true);

@@ -41,7 +41,7 @@ struct Knee {
 }
 
 impl Knee {
-    /// What differs from a healthy knee.
+    /// Values in which it differs from a healthy knee.
     fn of(name: &str, values: &Values) -> Self {
         let changes = values.iter().zip(pipeline::healthy().0);
         let (ids, values) = changes

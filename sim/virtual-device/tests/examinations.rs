@@ -78,12 +78,11 @@ fn examined(preset: &Preset, is_blind: bool) -> Examined {
         } else {
             (shown_for_s >= 4.0 && time_s >= SHORTEST_S) || time_s >= LONGEST_S
         };
-        if is_over {
+        found.faults = (board.drive().fault(), board.comms().fault());
+        if is_over || found.faults != (None, None) {
             break;
         }
     }
-    let board = host.device.board();
-    found.faults = (board.drive().fault(), board.comms().fault());
     found
 }
 
@@ -119,7 +118,8 @@ fn has_torque(examined: &Examined, finding: &Finding) -> bool {
 /// Asserts that the movements were made that show this knee's signs, and that each has its torque.
 fn shows_its_signs(preset: &Preset, examined: &Examined) {
     let name = &preset.name;
-    assert_eq!(examined.faults, (None, None), "{name}");
+    let end_s = examined.samples.last().map(|sample| sample[0]);
+    assert_eq!(examined.faults, (None, None), "{name} at {end_s:?} s");
     let findings: Vec<Finding> = examined.examination.findings().collect();
     assert!(!findings.is_empty(), "{name} has no sign");
     // What is empty has no torque by its definition.

@@ -27,7 +27,7 @@ struct Open {
     last: (f64, f64),
 }
 
-/// What a mean says.
+/// Movement that a mean shows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     /// Time at which the mean was over, s.
