@@ -58,6 +58,9 @@ const LET_GO_S: f64 = 0.9;
 /// friction 0.4 are compensated while the leg moves.
 const BORNE_NM: f64 = 3.5;
 
+/// Angle by which cuff and leg give under such a torque, at most, °.
+const GIVE_DEG: f64 = 1.0;
+
 /// A little of the way, °, towards the middle of the range, and the speed with which such a knee is let go, °/s.
 const BIT_DEG: f64 = 20.0;
 const MIDDLE_DEG: f64 = 60.0;
@@ -128,7 +131,7 @@ impl Examiner {
         }
         let stiff_deg = stiff_deg(effects);
         self.plan = match stiff_deg {
-            Some(presliding_deg) => bit_by_bit(from_deg, presliding_deg).into(),
+            Some(back_deg) => bit_by_bit(from_deg, back_deg).into(),
             None => plan(effects, *grates, &self.usual),
         };
         let lets_go = stiff_deg.filter(|_| sense != 0.0).map(let_go);
@@ -181,11 +184,11 @@ impl Examiner {
     }
 }
 
-/// Travel over which the resistance of a knee builds up that is stiffer than motor and gear bear for long, °; `None`
-/// of other knees.
+/// Travel by which a knee is let go that is stiffer than motor and gear bear for long, °: over which its resistance
+/// builds up, and by which cuff and leg have given. `None` of other knees.
 fn stiff_deg(effects: &EffectSettings) -> Option<f64> {
     let pipe = effects.lead_pipe?;
-    (pipe.torque_nm > BORNE_NM).then_some(pipe.presliding_deg)
+    (pipe.torque_nm > BORNE_NM).then_some(pipe.presliding_deg + GIVE_DEG)
 }
 
 /// Movements for a knee, one after another and again.
@@ -268,16 +271,16 @@ fn stretch_deg_s(sign: &Sign) -> f64 {
     (MARGIN * sign.appears_from_deg_s()).clamp(least, most)
 }
 
-/// A little to and fro, each time let go by as much as the resistance takes to build up.
-fn bit_by_bit(from_deg: f64, presliding_deg: f64) -> [Movement; 4] {
+/// A little to and fro, each time let go by some degrees.
+fn bit_by_bit(from_deg: f64, back_deg: f64) -> [Movement; 4] {
     let sense = if from_deg < MIDDLE_DEG { 1.0 } else { -1.0 };
     let to =
         |deg: f64, deg_s: f64, rest_s: f64| Movement::new(from_deg + sense * deg, deg_s, rest_s);
     [
         to(BIT_DEG, BACK_DEG_S, 0.0),
-        to(BIT_DEG - presliding_deg, LET_GO_DEG_S, LET_GO_S),
+        to(BIT_DEG - back_deg, LET_GO_DEG_S, LET_GO_S),
         to(0.0, BACK_DEG_S, 0.0),
-        to(presliding_deg, LET_GO_DEG_S, LET_GO_S),
+        to(back_deg, LET_GO_DEG_S, LET_GO_S),
     ]
 }
 
@@ -364,7 +367,7 @@ mod tests {
         assert!(ends_deg.iter().all(|off| off.abs() < 1e-9), "{ends_deg:?}");
     }
 
-    /// Bent a little, and let go by 1.5°: gear and motor cool down meanwhile.
+    /// Bent a little, and let go by 2.5°: gear and motor cool down meanwhile.
     #[test]
     fn a_knee_that_is_too_stiff_is_let_go_before_anything_else() {
         let scene = crepitus_scene::shipped::examination().unwrap();
@@ -373,7 +376,7 @@ mod tests {
         assert!(examiner.meet(&(stiff, false)));
         examiner.await_leg();
         let mut motion = examiner.begin();
-        for end_deg in [8.5, 30.0, 28.5, 10.0, 11.5, 30.0] {
+        for end_deg in [7.5, 30.0, 27.5, 10.0, 12.5, 30.0] {
             let deg = motion.at(60.0).phi_rad.to_degrees();
             assert!((deg - end_deg).abs() < 1e-9, "{deg} for {end_deg}");
             motion = (0..).find_map(|_| examiner.tick()).unwrap();
