@@ -52,7 +52,7 @@ const HOLD_S: f64 = 3.0;
 const END_S: f64 = 0.5;
 const BEFORE_S: f64 = 0.3;
 const AFTER_S: f64 = 0.2;
-const LET_GO_S: f64 = 0.9;
+const LET_GO_S: f64 = 1.2;
 
 /// Rigidity up to which whole strokes are no overload, N·m: gear and motor bear 3.2 for ever, and of the
 /// friction 0.4 are compensated while the leg moves.
@@ -62,9 +62,9 @@ const BORNE_NM: f64 = 3.5;
 const GIVE_DEG: f64 = 1.0;
 
 /// A little of the way, °, towards the middle of the range, and the speed with which such a knee is let go, °/s.
-const BIT_DEG: f64 = 20.0;
+const BIT_DEG: f64 = 16.0;
 const MIDDLE_DEG: f64 = 60.0;
-const LET_GO_DEG_S: f64 = 10.0;
+const LET_GO_DEG_S: f64 = 30.0;
 
 /// The examiner.
 pub(super) struct Examiner {
@@ -376,7 +376,7 @@ mod tests {
         assert!(examiner.meet(&(stiff, false)));
         examiner.await_leg();
         let mut motion = examiner.begin();
-        for end_deg in [7.5, 30.0, 27.5, 10.0, 12.5, 30.0] {
+        for end_deg in [7.5, 26.0, 23.5, 10.0, 12.5, 26.0] {
             let deg = motion.at(60.0).phi_rad.to_degrees();
             assert!((deg - end_deg).abs() < 1e-9, "{deg} for {end_deg}");
             motion = (0..).find_map(|_| examiner.tick()).unwrap();
