@@ -1,7 +1,6 @@
 //! The knee: presets and parameters. Every change is one commit.
 
 use super::DeviceThread;
-use super::lessons::Held;
 use crate::hello;
 use crate::lesson::{Knee, Lesson};
 use crate::live::Pain;
@@ -214,7 +213,7 @@ impl<T: Transport> DeviceThread<'_, T> {
             name => self.preset_of(name).map(|preset| Knee::from(&preset)),
         };
         let now = self.knee_name().and_then(|name| knee_of(&name).ok());
-        let coming = self.lesson.as_ref().map(Held::lesson);
+        let coming = self.lesson.as_ref().map(|held| held.lesson());
         let coming = coming.filter(|lesson| !lesson.ended() && !lesson.began());
         let next = coming.map(Lesson::knee);
         let message = json!({ "knee": { "now": now, "next": next } });
