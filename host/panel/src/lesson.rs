@@ -38,6 +38,7 @@ pub mod statistics;
 mod summary;
 mod view;
 
+pub(crate) use finding::HEALTHY;
 pub use finding::{Finding, Knee};
 pub(crate) use folder::trial_of;
 pub use folder::{FolderError, SessionFolder};

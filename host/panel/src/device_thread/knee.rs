@@ -1,8 +1,9 @@
 //! The knee: presets and parameters. Every change is one commit.
 
 use super::DeviceThread;
+use super::lessons::Held;
 use crate::hello;
-use crate::lesson::{Knee, Lesson};
+use crate::lesson::{HEALTHY, Knee, Lesson};
 use crate::live::Pain;
 use crate::request::SavePreset;
 use crate::shared::Outcome;
@@ -18,9 +19,6 @@ use std::iter::once;
 
 /// Longest name that is made of a title; a number may follow it.
 const MOST_NAME: usize = 40;
-
-/// The knee without a disorder.
-pub(super) const HEALTHY: &str = "healthy";
 
 impl<T: Transport> DeviceThread<'_, T> {
     pub(super) fn apply(&mut self, name: &str, add: bool) -> Outcome {
@@ -213,7 +211,7 @@ impl<T: Transport> DeviceThread<'_, T> {
             name => self.preset_of(name).map(|preset| Knee::from(&preset)),
         };
         let now = self.knee_name().and_then(|name| knee_of(&name).ok());
-        let coming = self.lesson.as_ref().map(|held| held.lesson());
+        let coming = self.lesson.as_ref().map(Held::lesson);
         let coming = coming.filter(|lesson| !lesson.ended() && !lesson.began());
         let next = coming.map(Lesson::knee);
         let message = json!({ "knee": { "now": now, "next": next } });

@@ -1,12 +1,11 @@
 //! Lessons: a list of knees, one after another.
 
 use super::DeviceThread;
-use super::knee::HEALTHY;
 use super::recording::extension;
 use crate::class::Keys;
 use crate::lesson::{
-    By, Feedback, Knee, Known, Lesson, MOST_SEED, Plan, Session, SessionFolder, Started, plans,
-    report,
+    By, Feedback, HEALTHY, Knee, Known, Lesson, MOST_SEED, Plan, Session, SessionFolder, Started,
+    plans, report,
 };
 use crate::live::Target;
 use crate::request::LessonBegin;

@@ -1,9 +1,8 @@
 //! A lesson that goes on after its program was interrupted, from its folder.
 
 use super::DeviceThread;
-use super::knee::HEALTHY;
 use super::lessons::Held;
-use crate::lesson::SessionFolder;
+use crate::lesson::{HEALTHY, SessionFolder};
 use crate::shared::Outcome;
 use crepitus_client::Transport;
 use serde_json::Value;
