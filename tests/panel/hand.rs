@@ -181,7 +181,7 @@ fn the_hand_of_a_page_that_has_gone_holds_still_then_lets_go() {
     let mut page = panel.controlling();
     bring(&mut page, 30.0);
     forget(&mut viewer);
-    move_hand(&mut page, 125.0, true);
+    move_hand(&mut page, 124.0, true);
     page.until("the first of the way", |page| {
         newest(page).is_some_and(|seen| seen.hand > 35.0)
     });
@@ -194,7 +194,7 @@ fn the_hand_of_a_page_that_has_gone_holds_still_then_lets_go() {
         .filter(|seen| seen.hand.is_finite())
         .collect();
     let end = held.last().copied().unwrap();
-    assert!(end.hand < 124.9, "{end:?}");
+    assert!(end.hand < 123.0, "{end:?}");
     // It has held still for most of two seconds.
     let still = held
         .iter()
