@@ -141,7 +141,7 @@ mod tests {
     /// A stroke at this speed, °/s, against this resistance by angle, °, and time, s.
     fn caught(deg_s: f64, nm: impl Fn(f64, f64) -> f64) -> Option<f64> {
         let mut catches = Catches::default();
-        for tick in 0..20_000 {
+        for tick in 0..60_000 {
             let time_s = f64::from(tick) * 5e-5;
             let deg = deg_s * time_s;
             if deg > 100.0 {
