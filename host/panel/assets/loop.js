@@ -214,7 +214,7 @@ export class Loop {
       line(ctx, map.left, y, map.right, y);
       // The ends would be cut off.
       const inside = clamp(y, map.top + size / 2, map.bottom - size / 2);
-      ctx.fillText(number(share * map.most, map.most < 1 ? 2 : 1), map.left - 5 * map.scale, inside);
+      ctx.fillText(number(share * map.most, 2), map.left - 5 * map.scale, inside);
     }
     ctx.textAlign = "center";
     ctx.textBaseline = "top";
