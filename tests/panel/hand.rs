@@ -75,14 +75,15 @@ fn a_hand_moves_the_leg_and_gives_it_back() {
     for deg in [40.0, 95.0, 10.0] {
         bring(&mut page, deg);
     }
-    // What is said once holds: the leg rests where gear and crepitus hold it back.
+    // What is said once holds: the leg settles, and rests where the gear holds it back.
+    page.go_on(Duration::from_secs(1));
     forget(&mut page);
     page.go_on(Duration::from_millis(2_500));
     let legs: Vec<_> = seen(&page).iter().map(|seen| seen.leg).collect();
     let [lowest, highest] =
         [f32::min, f32::max].map(|end| legs.iter().copied().reduce(end).unwrap());
     assert!(
-        lowest > 5.0 && highest < 15.0 && highest - lowest < 0.2,
+        lowest > 8.0 && highest < 12.0 && highest - lowest < 0.5,
         "{lowest}° to {highest}°"
     );
     // Beyond what a brace may be armed at is its end.
@@ -225,7 +226,7 @@ fn a_flood_of_targets_is_the_last_of_them() {
     assert!(viewer.frames.len() > 10, "{} frames", viewer.frames.len());
 }
 
-/// What a viewer sends does not take the place of what the page in control has asked for once.
+/// Messages of a viewer do not take the place of the target that the page in control has sent once.
 #[test]
 fn a_flood_of_a_viewer_replaces_no_target() {
     let panel = Panel::new(&SIM);

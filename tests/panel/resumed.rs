@@ -10,7 +10,7 @@ use std::time::Duration;
 
 const STUDENTS: [&str; 2] = ["Quokka", "Wombat"];
 
-/// What is answered in turn.
+/// Answers that are given in turn.
 const ANSWERS: [&str; 4] = ["clonus", "texture", "crepitus", "cogwheel"];
 
 /// The stored answers to the first knee, by student.

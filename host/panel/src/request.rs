@@ -15,7 +15,7 @@ pub(crate) enum Message {
     },
     /// The page plays the torque as sound from now on, or no longer.
     Listen {
-        /// It plays it.
+        /// The page plays it.
         listen: bool,
     },
     /// A request.
@@ -440,7 +440,7 @@ mod tests {
         text.replacen('{', r#"{"id":1,"#, 1)
     }
 
-    /// What a role can ask for at all, whoever has control.
+    /// Requests that a role may make at all, whoever has control.
     #[test]
     fn each_role_has_the_least_rights() {
         let may = |role: Role| -> Vec<&str> {

@@ -51,7 +51,7 @@ mod tests {
         texts.keys().filter(is_own).cloned().collect()
     }
 
-    /// What has no text would be shown by its identifier.
+    /// Names without a text would be shown by their identifiers.
     #[test]
     fn what_a_device_has_is_named() {
         let known = keys("en");

@@ -268,7 +268,7 @@ fn hides(device_thread: &mut DeviceThread<'_, Flood>) -> bool {
     is_hidden
 }
 
-/// Its torque still ramps down, and would tell which knee it was.
+/// The torque still ramps down, and would tell which knee it was.
 #[test]
 fn a_knee_that_was_left_is_hidden_until_its_torque_has_ended() {
     let program = Alone::default();

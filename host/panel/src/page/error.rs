@@ -20,7 +20,7 @@ pub enum PageError {
     Missing {
         /// The module.
         file: String,
-        /// What it imports.
+        /// Module that it imports.
         import: String,
     },
     /// A name that the other module does not export.
@@ -28,7 +28,7 @@ pub enum PageError {
     NotExported {
         /// The module.
         file: String,
-        /// What it imports.
+        /// Module that it imports.
         import: String,
         /// The name.
         name: String,

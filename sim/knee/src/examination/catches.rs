@@ -29,7 +29,7 @@ const SLOTS: usize = 12;
 /// A catch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Catch {
-    /// Its angle, rad.
+    /// Angle at which it was felt, rad.
     pub(super) angle_rad: f64,
     /// Speed with which the leg came there, rad/s.
     pub(super) speed_rad_s: f64,

@@ -22,30 +22,30 @@ pub struct Finding {
 /// Whether the movement was made that shows a sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// It was.
+    /// The movement was made.
     Shown,
     /// The leg was hardly moved.
     NotMoved,
-    /// It was too slow.
+    /// The movement was too slow.
     TooSlow {
         /// The highest speed in the sense of the sign, °/s.
         fastest_deg_s: f64,
         /// Speed from which the sign appears, °/s.
         least_deg_s: f64,
     },
-    /// It did not go far enough.
+    /// The leg did not come far enough.
     TooShort {
         /// Furthest angle in the sense of the sign, °.
         furthest_deg: f64,
         /// Angle at which the sign appears, °.
         needed_deg: f64,
     },
-    /// It was fast enough, but no more so at the angle at which the sign appears then.
+    /// The movement was fast enough, but no more so at the angle at which the sign appears then.
     NotThere {
         /// That angle, °.
         needed_deg: f64,
     },
-    /// It was not held for long enough.
+    /// The leg was not held for long enough.
     NotHeld {
         /// Longest time for which it was held, s.
         held_s: f64,

@@ -65,7 +65,7 @@ enum Holding {
     Not,
     /// The leg is being stretched.
     Stretched,
-    /// It is held here since then, rad and s.
+    /// Angle at which the leg is held, and time since when, rad and s.
     Held(f64, f64),
 }
 

@@ -42,7 +42,7 @@ pub(super) fn sections(
     sections
 }
 
-/// What a physiotherapist would note; nothing of a leg that was not moved.
+/// Measures that a physiotherapist would note; none of a leg that was not moved.
 fn examination(s: &RecordingSummary) -> Option<Section> {
     let rows: Vec<_> = (Measure::ALL.iter())
         .filter_map(|measure| {

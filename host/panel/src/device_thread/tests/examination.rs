@@ -1,4 +1,4 @@
-//! What is measured, of whom, and what a blind trial hides of it.
+//! Measures of an examination: of whose they are, and which of them a blind trial hides.
 
 use super::{Alone, Flood, device_thread};
 use crate::device_thread::DeviceThread;

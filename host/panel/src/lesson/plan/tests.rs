@@ -61,7 +61,7 @@ fn every_shipped_lesson_is_valid() {
     assert!(plans::find("wobble").is_none());
 }
 
-/// Whoever keeps to the target of a knee feels all of its signs.
+/// A student who keeps to the target of a knee feels all of its signs.
 #[test]
 fn every_shipped_lesson_can_be_done() {
     let mut seen = 0;
