@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn every_folder_of_this_computer_has_another_name() {
-        let (root, sysroot) = (Path::new("/work/two words"), Path::new("/toolchain"));
+        let (root, sysroot) = (Path::new("/home/two words"), Path::new("/toolchain"));
         let about = "rustc 1.0.0\nbinary: rustc\ncommit-hash: 0123abc\nhost: here\n";
         let registries = [PathBuf::from("/home/me/.cargo/registry/src/index-1")];
         let all = flags(&names(root, sysroot, about, &registries));
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(
             each,
             [
-                "--remap-path-prefix=/work/two words=/crepitus",
+                "--remap-path-prefix=/home/two words=/crepitus",
                 "--remap-path-prefix=/toolchain/lib/rustlib/src/rust=/rustc/0123abc",
                 "--remap-path-prefix=/home/me/.cargo/registry/src/index-1=/crates",
             ]
