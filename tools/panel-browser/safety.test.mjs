@@ -99,8 +99,10 @@ test("torque ends when the controlling page closes, reloads or hangs", async () 
       await arm(page);
       await untilState(viewer, "armed");
       const began = Date.now();
-      await end(page);
+      // A page that is loaded again takes its time.
+      const ended = end(page);
       const off = await offAfter(viewer, began);
+      await ended;
       await page.close();
       return off;
     });

@@ -33,9 +33,10 @@ const byLevel = (a, b) => LEVELS.indexOf(a.level) - LEVELS.indexOf(b.level);
 
 function describe(card, preset) {
   const source = preset.source ? text("knee.source", { source: preset.source }) : "";
+  const feel = presetText(preset, "feel");
   card.about.replaceChildren(
     el("h4", null, presetText(preset, "title")),
-    el("p", { class: "feel" }, text("knee.feel", { feel: presetText(preset, "feel") })),
+    el("p", { class: "feel" }, feel && text("knee.feel", { feel })),
     el("p", null, presetText(preset, "severity")),
     el(
       "p",

@@ -6,9 +6,11 @@ import { text, textOr } from "./strings.js";
 /** The disorder that is offered first: the project is named for it. */
 export const FIRST_DISORDER = "crepitus";
 
-/** A text of a preset: `title`, `feel` or `severity`. */
+/** A text of a preset: `title`, `feel` or `severity`; one of the user's own need not have any. */
 export const presetText = (preset, what) =>
-  preset.own ? preset[what] : textOr(`preset.${preset.name}.${what}`, preset[what]);
+  preset.own
+    ? (preset[what] ?? (what === "title" ? preset.name : ""))
+    : textOr(`preset.${preset.name}.${what}`, preset[what]);
 
 /** The name of a severity. */
 export const levelName = (level) => (level ? textOr(`level.${level}`, level) : "–");
