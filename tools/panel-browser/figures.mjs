@@ -1,6 +1,6 @@
 // Figures of a panel under way: what the page draws, what viewers get, and what the program takes for it.
 
-import { readFileSync } from "node:fs";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { WebSocket } from "ws";
 
 /** CPU time that a process has taken, s. */
@@ -8,6 +8,21 @@ export const cpu = (pid) => {
   const fields = readFileSync(`/proc/${pid}/stat`, "utf8").split(") ")[1].split(" ");
   return (Number(fields[11]) + Number(fields[12])) / 100;
 };
+
+/** CPU time of the main threads of the browser's pages by process, ms; empty where the system does not tell. */
+export function pagesCpu() {
+  const pages = new Map();
+  const names = existsSync("/proc/self/schedstat") ? readdirSync("/proc") : [];
+  for (const pid of names.filter((name) => /^\d+$/.test(name))) {
+    try {
+      if (!readFileSync(`/proc/${pid}/cmdline`, "utf8").includes("--type=renderer")) continue;
+      pages.set(pid, Number(readFileSync(`/proc/${pid}/task/${pid}/schedstat`, "utf8").split(" ")[0]) / 1e6);
+    } catch {
+      // It has ended meanwhile.
+    }
+  }
+  return pages;
+}
 
 /** Memory of a process, MB. */
 export const memory = (pid) => Number(readFileSync(`/proc/${pid}/status`, "utf8").match(/VmRSS:\s+(\d+)/)[1]) / 1000;

@@ -89,8 +89,9 @@ export function makeCutaway(host) {
   );
   drawing.classList.add("cutaway");
   host.replaceChildren(drawing);
-  const turn = (part, degrees) =>
-    part.setAttribute("transform", `rotate(${degrees.toFixed(1)} ${KNEE.x} ${KNEE.y})`);
+  // As a style: an attribute would lay out the drawing.
+  for (const part of [ghost, shank, shaft, object]) part.style.transformOrigin = `${KNEE.x}px ${KNEE.y}px`;
+  const turn = (part, degrees) => (part.style.transform = `rotate(${degrees.toFixed(1)}deg)`);
   const show = (part, is) => part.classList.toggle("off", !is);
   let spokenAt = -Infinity;
   return ({ angle, hand, object: displacement, spring: load, torque, phase }) => {

@@ -53,15 +53,22 @@ export class Flow {
     this.list.classList.toggle("off", !this.knee);
   }
 
-  /** Shows a phase: 1 stick, 2 slip, 0 neither; at once where time passes slowly. */
-  show(phase, isSlow) {
-    for (const { name, root } of this.parts) {
-      if (!(name in PHASES)) continue;
+  /** Takes the phase of a picture: 1 stick, 2 slip, 0 neither; at once where time passes slowly. */
+  take(phase, isSlow) {
+    for (const name of Object.keys(PHASES)) {
       const now = this.knee && PHASES[name] === phase ? 1 : 0;
-      const share = isSlow ? now : LEFT * this.shares[name] + (1 - LEFT) * now;
-      if (Math.abs(share - this.shares[name]) < 0.001) continue;
-      this.shares[name] = share;
-      root.style.setProperty("--share", `${Math.round(share * 100)}%`);
+      this.shares[name] = isSlow ? now : LEFT * this.shares[name] + (1 - LEFT) * now;
+    }
+  }
+
+  /** Lights the phases. */
+  show() {
+    for (const part of this.parts) {
+      if (!(part.name in PHASES)) continue;
+      const percent = Math.round(100 * this.shares[part.name]);
+      if (percent === part.percent) continue;
+      part.percent = percent;
+      part.root.style.setProperty("--share", `${percent}%`);
     }
   }
 }

@@ -8,6 +8,11 @@ import { Loop } from "./loop.js";
 import { Slow } from "./slow.js";
 
 const DEGREES = 180 / Math.PI;
+// Thirty times a second are enough for what changes slowly. Where pictures come late it leaves its time to the leg.
+const BESIDE_MS = 32;
+const USUAL_MS = 18;
+const YIELD = 15;
+const LONGEST_MS = 200;
 
 const middle = (low, high) => (low + high) / 2;
 const larger = (low, high) => (Math.abs(high) >= Math.abs(low) ? high : low);
@@ -20,7 +25,9 @@ export class Inside {
     this.loop = new Loop(hosts.loop, scale);
     this.flow = new Flow(hosts.flow);
     this.knee = null;
-    this.pictures = 0;
+    this.spacing = USUAL_MS;
+    this.before = 0;
+    this.besideAt = 0;
   }
 
   /**
@@ -40,9 +47,14 @@ export class Inside {
     const state = this.stateAt(shown.columns, index, masked);
     if (isStale && !isSlow) state.angle = state.hand = state.torque = NaN;
     this.showLeg(state);
-    this.flow.show(state.phase, isSlow);
-    // Thirty times a second are enough for what changes slowly.
-    if (this.pictures++ % 2 === 0) this.loop.draw(bins, masked.torque);
+    this.flow.take(state.phase, isSlow);
+    this.spacing += 0.1 * (Math.min(LONGEST_MS, now - this.before) - this.spacing);
+    this.before = now;
+    const wait = BESIDE_MS + YIELD * Math.max(0, this.spacing - USUAL_MS);
+    if (now - this.besideAt < Math.min(LONGEST_MS, wait)) return;
+    this.besideAt = now;
+    this.flow.show();
+    this.loop.draw(bins, masked.torque);
   }
 
   /** The state of the cutaway in a bin. */

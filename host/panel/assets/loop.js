@@ -34,6 +34,7 @@ export class Loop {
     this.masked = false;
     this.bins = { columns: null, begin: 0, end: 0 };
     this.readAt = 0;
+    this.measure();
     this.build(host);
     onLanguage(() => this.name());
     new ResizeObserver(() => this.resize()).observe(this.box);
@@ -104,7 +105,13 @@ export class Loop {
     if (!width) return;
     this.canvas.width = Math.round(width * devicePixelRatio);
     this.canvas.height = Math.round(height * devicePixelRatio);
+    this.measure();
     this.paint();
+  }
+
+  // Asked for in every picture it would lay out the page.
+  measure() {
+    this.rem = rootSize();
   }
 
   key(event) {
@@ -140,6 +147,7 @@ export class Loop {
   /** The torques at the cursor, there and back, in words. */
   readOut() {
     this.readAt = performance.now();
+    this.measure();
     const { columns, begin, end } = this.recent();
     let bending = NaN;
     let stretching = NaN;
@@ -163,10 +171,10 @@ export class Loop {
     const scale = devicePixelRatio;
     const [low, high] = this.scale.angle;
     const most = this.scale.torque / (this.enlarged ? ENLARGED : 1);
-    const left = 3 * rootSize() * scale;
+    const left = 3 * this.rem * scale;
     const right = width - 8 * scale;
     const top = 8 * scale;
-    const bottom = height - 1.6 * rootSize() * scale;
+    const bottom = height - 1.6 * this.rem * scale;
     const kx = (right - left) / (high - low);
     const ky = (bottom - top) / (2 * most);
     return {
@@ -202,7 +210,7 @@ export class Loop {
 
   paintAxes(ctx, map) {
     const [low, high] = this.scale.angle;
-    const size = Math.round(rootSize() * 0.875 * map.scale);
+    const size = Math.round(this.rem * 0.875 * map.scale);
     ctx.font = `${size}px system-ui, sans-serif`;
     ctx.fillStyle = this.colours.get("--axis-text");
     ctx.strokeStyle = this.colours.get("--grid");

@@ -22,14 +22,22 @@
 //! **[Path](HandPath)**: each target is approached within a thirtieth of a second, at one speed and at most at
 //! [`MOST_RAD_S`]; two equal lags round the corners. Behind a target that moves steadily the distance is then
 //! the same whenever the next one comes, so the path is as steady: an uneven rate of a display does not
-//! show. A path is always a mean of earlier targets, so it never goes beyond them.
+//! show. From a display that is slower, the path learns the longest time between two targets and approaches
+//! them within that, up to [`LONGEST_APPROACH_S`]: a busy computer shows the leg later, but does not jerk it.
+//! A longer pause is one of the hand. A path is always a mean of earlier targets, so it never goes beyond them.
 
 /// Highest speed of a path, rad/s: 275 °/s. A leg that catches up is up to a seventh faster, and a device
 /// lets go at 328 °/s.
 pub const MOST_RAD_S: f64 = 4.8;
 
-/// Time in which a target is approached, s: the interval of the slowest display.
+/// Time in which a target is approached, s: the interval of the slowest usual display.
 pub const APPROACH_S: f64 = 1.0 / 30.0;
+
+/// Longest such time, s: of a display that draws five pictures a second.
+pub const LONGEST_APPROACH_S: f64 = 0.2;
+
+/// Share of a learned time that is kept from target to target: half after 70 of them.
+const KEPT: f64 = 0.99;
 
 /// Time constant of each of the two lags, s.
 pub const CORNER_S: f64 = 6e-3;
@@ -81,6 +89,9 @@ pub struct HandState {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandPath {
     target_rad: f64,
+    /// Time in which a target is approached, and since the last target, s.
+    approach_s: f64,
+    since_s: f64,
     /// Point that goes straight to the target, and its speed.
     goal_rad: f64,
     goal_rad_s: f64,
@@ -95,6 +106,8 @@ impl HandPath {
         let first_rad = leg.angle_rad + CORNER_S * leg.omega_rad_s;
         Self {
             target_rad: first_rad,
+            approach_s: APPROACH_S,
+            since_s: f64::INFINITY,
             goal_rad: first_rad,
             goal_rad_s: 0.0,
             first_rad,
@@ -108,12 +121,18 @@ impl HandPath {
             return;
         }
         self.target_rad = target_rad;
-        let speed = (target_rad - self.goal_rad) / APPROACH_S;
+        if self.since_s <= LONGEST_APPROACH_S {
+            let kept_s = APPROACH_S.max(KEPT * self.approach_s);
+            self.approach_s = kept_s.max(self.since_s);
+        }
+        self.since_s = 0.0;
+        let speed = (target_rad - self.goal_rad) / self.approach_s;
         self.goal_rad_s = speed.clamp(-MOST_RAD_S, MOST_RAD_S);
     }
 
     /// Goes on for a step of `step_s`, s.
     pub fn advance(&mut self, step_s: f64) -> HandState {
+        self.since_s += step_s;
         let left_rad = self.target_rad - self.goal_rad;
         let stride_rad = self.goal_rad_s * step_s;
         self.goal_rad = if stride_rad.abs() < left_rad.abs() {
@@ -252,6 +271,46 @@ mod tests {
                 assert!((lag_s - known).abs() < 1e-4, "{lag_s}");
             }
         }
+    }
+
+    /// Largest ratio of the path's speed to that of a steady pointer, of which a busy page sends so many targets a second.
+    fn haste(rng: &mut Rng, rates: [f64; 2], speed: f64) -> f64 {
+        let mut gap = || (1.0 / (rates[0] + rng.f64() * (rates[1] - rates[0])) / TICK_S) as u32;
+        let mut path = at(0.0);
+        let (mut next, mut fastest) = (0, 0.0_f64);
+        for tick in 0..60_000 {
+            if tick == next {
+                path.aim(speed * f64::from(tick) * TICK_S);
+                next += gap();
+            }
+            let now = path.advance(TICK_S);
+            // It learns for a second.
+            if tick > 20_000 {
+                fastest = fastest.max(now.omega_rad_s / speed);
+            }
+        }
+        fastest
+    }
+
+    #[test]
+    fn a_busy_page_makes_the_hand_late_and_no_faster() {
+        let mut rng = Rng::with_seed(5);
+        for (rates, most) in [([20.0, 60.0], 1.05), ([6.0, 30.0], 1.15)] {
+            let ratio = haste(&mut rng, rates, 2.0);
+            assert!(ratio < most, "{rates:?}: {ratio}");
+        }
+    }
+
+    #[test]
+    fn a_pause_of_the_hand_is_none_of_the_page() {
+        let mut path = at(0.0);
+        for target in 1..40 {
+            path.aim(0.1 * f64::from(target % 2));
+            for _ in 0..12_000 {
+                path.advance(TICK_S);
+            }
+        }
+        assert_eq!(path.approach_s, APPROACH_S);
     }
 
     #[test]
