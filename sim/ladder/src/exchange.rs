@@ -12,7 +12,7 @@
 //!
 //! | | words of an input | words of an output |
 //! |---|---|---|
-//! | joints, symptoms | Δφ, Ω at its begin, Ω at its end, [kind](Kind) | torque, [events](crate::measured) of a joint, fraction of the last |
+//! | joints, laws, symptoms | Δφ, Ω at its begin, Ω at its end, [kind](Kind) | torque, [events](crate::measured) of a joint, fraction of the last |
 //! | encoder | count, –, –, kind | Δφ, Ω |
 //! | friction compensation | Ω | torque |
 //! | bone shaping | Δφ, jump of the torque | torque |

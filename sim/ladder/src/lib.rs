@@ -1,6 +1,7 @@
 //! # Cost of a step, on host and target
 //!
-//! Every rung of the solver ladder and every effect that runs on the device,
+//! Every rung of the solver ladder, every effect that runs on the device and every
+//! friction law,
 //! as subjects that are stepped from a block of memory. The same code runs on
 //! the host and, as `firmware/ladder`, on the target: its emulator writes a
 //! plan into the block, and reads the results there.
@@ -18,6 +19,7 @@
 //! | the words of the block | [`exchange`], [`plan`] |
 //! | one step of each subject | [`measured`] |
 //! | the program | [`mod@serve`] |
+//! | friction laws of others | [`laws`] |
 //! | cost of its steps | [`cost`] |
 //! | loops that are timed on the host | `loops` |
 //!
@@ -37,11 +39,14 @@
     allow(clippy::unwrap_used, clippy::panic, clippy::indexing_slicing)
 )]
 
+#[cfg(feature = "loops")]
+extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
 pub mod cost;
 pub mod exchange;
+pub mod laws;
 #[cfg(feature = "loops")]
 pub mod loops;
 #[cfg(feature = "serve")]

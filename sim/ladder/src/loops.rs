@@ -16,6 +16,30 @@ use crepitus_model::render::{ShaftEstimate, Shown};
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{Real, Settings, SettingsError, ShaftStep, StickSlip, Validated};
 
+/// Compiler and options that the loops are built with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Build {
+    /// Compiler and its version.
+    pub compiler: &'static str,
+    /// Optimisation level of the loops.
+    pub opt_level: &'static str,
+    /// Target triple.
+    pub target: &'static str,
+    /// Enabled features of the target, with commas.
+    pub target_features: &'static str,
+    /// Whether debug assertions are compiled in.
+    pub has_debug_assertions: bool,
+}
+
+/// The build of the loops.
+pub const BUILD: Build = Build {
+    compiler: env!("CREPITUS_COMPILER"),
+    opt_level: env!("CREPITUS_OPT_LEVEL"),
+    target: env!("CREPITUS_TARGET"),
+    target_features: env!("CREPITUS_TARGET_FEATURES"),
+    has_debug_assertions: cfg!(debug_assertions),
+};
+
 /// A step of the shaft, and the place where it ends.
 pub type PlacedStep<F> = (ShaftStep<F>, Position<F>);
 

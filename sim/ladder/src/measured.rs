@@ -4,6 +4,7 @@
 //! in the lowest, 1 a break, 2 a stick, 3 a reversal.
 
 use crate::exchange::{Input, Kind, Output};
+use crate::laws::Mounted;
 use crepitus_model::control::encoder::EncoderReader;
 use crepitus_model::render::effects::{DeviceEffect, Tick};
 use crepitus_model::render::input_check::Checked;
@@ -138,6 +139,16 @@ impl Measured for EncoderReader<f32> {
             shaft.omega_end_rad_s.to_bits(),
             0,
         ]
+    }
+}
+
+/// A friction law.
+pub struct Law<M>(pub M);
+
+impl<M: Mounted<f32>> Measured for Law<M> {
+    #[inline]
+    fn step(&mut self, input: &Input) -> Output {
+        [self.0.step(&input.shaft()).to_bits(), 0, 0]
     }
 }
 

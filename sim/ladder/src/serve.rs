@@ -1,7 +1,8 @@
 //! The program: reads a plan, runs its steps, waits for the next command.
 
 use crate::exchange::{BEGIN, ENTRY, Exchange, Input, Kind, Output, READY, REFUSED, RUN, STATE};
-use crate::measured::{Effect, Joint, Measured, Rendered, step};
+use crate::laws;
+use crate::measured::{Effect, Joint, Law, Measured, Rendered, step};
 use crate::plan::Plan;
 use crate::subject::{Subject, in_form};
 use core::hint::black_box;
@@ -102,6 +103,15 @@ impl Here<'_> {
                 let settings = CurrentLoopSettings::defaults();
                 self.run(CurrentLoop::new(&settings, step_s)?, None)
             }
+            // There is a subject for each law but ours only.
+            Subject::Law(_) => match plan.subject.law() {
+                Some(entry) => {
+                    let [joint, _] = plan.parameters;
+                    let visitor = FrictionVisitor { here: self };
+                    entry.with(&joint, step_s, plan.omega_rad_s, visitor)?
+                }
+                None => false,
+            },
         })
     }
 
@@ -165,7 +175,7 @@ fn address(of: usize) -> u32 {
     of as u32 & !1
 }
 
-/// Runs a law.
+/// Runs an effect.
 struct EffectVisitor<'a, 'b> {
     scale: Scale<f32>,
     here: &'a mut Here<'b>,
@@ -178,6 +188,19 @@ impl LawVisitor<f32> for EffectVisitor<'_, '_> {
     fn visit<E: DeviceEffect<f32>>(self, law: E) -> bool {
         let place = self.plan.place;
         self.here.run(Effect::new(law, place, self.scale), None)
+    }
+}
+
+/// Runs a friction law.
+struct FrictionVisitor<'a, 'b> {
+    here: &'a mut Here<'b>,
+}
+
+impl laws::LawVisitor<f32> for FrictionVisitor<'_, '_> {
+    type Output = bool;
+
+    fn visit<M: laws::Mounted<f32>>(self, law: M) -> bool {
+        self.here.run(Law(law), None)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The measured subjects.
 
+use crate::laws::{ENTRIES, Entry};
 use crepitus_model::Convention;
 use crepitus_model::parameters::{Choice, Chosen};
 use crepitus_model::render::effects::{EffectSettings, EffectSpec, SPECS};
@@ -22,6 +23,8 @@ pub enum Subject {
     Effect(usize, u8),
     /// The loop of the motor's current.
     CurrentLoop,
+    /// The friction law at this place of [`ENTRIES`]. The product's own joint is a rung instead.
+    Law(u8),
 }
 
 /// The choice between laws of an effect: its form, its mode, or its trigger.
@@ -57,7 +60,7 @@ const DEVICE: [Subject; 5] = [
 
 impl Subject {
     /// All subjects: each rung under every convention where it has a meaning,
-    /// then the device's other code.
+    /// then the device's other code, then the friction laws.
     pub fn all() -> impl Iterator<Item = Self> {
         let rungs = Convention::ALL.into_iter().flat_map(|convention| {
             Solver::ALL
@@ -72,6 +75,12 @@ impl Subject {
                 (0..).take(forms).map(move |form| Self::Effect(place, form))
             }))
             .chain([Self::CurrentLoop])
+            .chain(
+                (0..)
+                    .zip(ENTRIES)
+                    .filter(|(_, entry)| !entry.is_ours())
+                    .map(|(place, _)| Self::Law(place)),
+            )
     }
 
     /// The form of an effect's law, if it has several.
@@ -83,8 +92,16 @@ impl Subject {
         names.get(usize::from(form)).copied()
     }
 
+    /// The friction law, if it is one.
+    pub fn law(self) -> Option<&'static Entry> {
+        let Self::Law(place) = self else {
+            return None;
+        };
+        ENTRIES.get(usize::from(place))
+    }
+
     /// Name of the subject: of a rung as in scene files, of an effect as in `crepitus
-    /// effects`, of others as in the model's documents.
+    /// effects`, of a law as in [`ENTRIES`], of others as in the model's documents.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rung(_, solver) => solver.name(),
@@ -93,6 +110,7 @@ impl Subject {
             Self::Encoder => "encoder",
             Self::Effect(place, _) => SPECS.get(place).map_or("", |spec| spec.name),
             Self::CurrentLoop => "current loop",
+            Self::Law(_) => self.law().map_or("", |entry| entry.name),
         }
     }
 
@@ -163,6 +181,23 @@ mod tests {
         for spec in SPECS {
             assert!(spec.choices.len() <= 8, "{}", spec.name);
         }
+    }
+
+    #[test]
+    fn each_law_but_our_own_is_there_by_its_name() {
+        let laws: Vec<_> = Subject::all()
+            .filter(|subject| matches!(subject, Subject::Law(_)))
+            .collect();
+        assert_eq!(laws.len(), ENTRIES.len() - Convention::ALL.len());
+        for law in laws {
+            let entry = law.law().unwrap();
+            assert_eq!((law.name(), law.convention()), (entry.name, None));
+            assert!(!entry.is_ours());
+        }
+        assert_eq!(
+            (Subject::Law(255).law(), Subject::Law(255).name()),
+            (None, "")
+        );
     }
 
     #[test]
