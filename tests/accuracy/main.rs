@@ -59,10 +59,10 @@ fn a_study_becomes_three_files() {
     let (header, rows) = csv(&out.join("points.csv"));
     assert_eq!(
         header.join(","),
-        "scene,convention,solver,precision,step_s,events,events_true,unmatched,\
+        "scene,convention,input,solver,precision,step_s,events,events_true,unmatched,\
          max_event_error_s,rms_event_error_s,max_interval_error_s,frequency_error_rel,\
          rms_held_torque_error_nm,max_held_torque_error_nm,held_floor_nm,\
-         rms_tick_torque_error_nm,max_tick_torque_error_nm,behind_s,behind_j,ns_per_step,us_per_simulated_s,\
+         rms_tick_torque_error_nm,max_tick_torque_error_nm,behind_s,behind_j,ns_per_step,ns_per_step_q1,ns_per_step_q3,us_per_simulated_s,\
          time_spread,cycles_per_step,worst_cycles,instructions_per_step"
     );
     // Ten rungs in two precisions, one in f64 alone, five steps.
@@ -70,6 +70,20 @@ fn a_study_becomes_three_files() {
     let summary = summary(&out);
     assert_eq!(summary["scenes"][0]["events_true"], 31);
     assert_eq!(summary["points"], 105);
+    let machine = &summary["machine"];
+    assert!(machine["compiler"].as_str().unwrap().starts_with("rustc "));
+    for key in ["cpu", "system", "target", "opt_level", "target_features"] {
+        assert!(!machine[key].as_str().unwrap().is_empty(), "{key}");
+    }
+    let at = |name: &str| header.iter().position(|column| column == name).unwrap();
+    let [first, median, third] = ["ns_per_step_q1", "ns_per_step", "ns_per_step_q3"].map(at);
+    for row in &rows {
+        assert_eq!(row[at("input")], "exact");
+        let [first, median, third] = [first, median, third].map(|column| number(&row[column]));
+        assert!(first <= median && median <= third, "{row:?}");
+        let spread = number(&row[at("time_spread")]);
+        assert!(((third - first) / median - spread).abs() < 1e-12, "{row:?}");
+    }
     assert!(summary["wall_s"].as_f64().unwrap() > 0.0);
     let report = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(report.len() < 5_000_000);
@@ -93,7 +107,7 @@ fn what_has_no_meaning_is_listed_with_its_reason() {
     let skipped = &printed["summary"]["skipped"][0];
     assert_eq!(skipped["step_s"], 1.0);
     let (_, rows) = csv(&out.join("points.csv"));
-    assert!(!rows.is_empty() && rows.iter().all(|r| r[2] != "rk4"));
+    assert!(!rows.is_empty() && rows.iter().all(|r| r[3] != "rk4"));
 }
 
 #[test]
@@ -220,8 +234,8 @@ fn a_scene_without_events_is_studied_too() {
     // Four rungs in two precisions, one step.
     assert_eq!(rows.len(), 8);
     for row in &rows {
-        assert_eq!(row[5..8], ["0", "0", "0"], "{row:?}");
-        assert_eq!(row[8], "nan");
+        assert_eq!(row[6..9], ["0", "0", "0"], "{row:?}");
+        assert_eq!(row[9], "nan");
         assert!(number(&row[tick.unwrap()]) < 1e-3, "{row:?}");
     }
 }

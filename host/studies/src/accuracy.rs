@@ -10,7 +10,7 @@
 //!
 //! | to find | look in |
 //! |---|---|
-//! | what is studied, at which steps | [`scenes`], [`steps`] |
+//! | what is studied, at which steps, and how a rung sees it | [`scenes`], [`steps`], [`input`] |
 //! | the whole study and its results | [`study`], [`results`] |
 //! | one point of the diagram, and its file | [`point`], [`points_table`] |
 //! | the torque to compare with, at the ends of steps and within them | [`reference_torque`], [`held_torque`] |
@@ -25,6 +25,7 @@ pub mod actuator;
 pub mod answer;
 pub mod convergence;
 pub mod held_torque;
+pub mod input;
 pub mod measure;
 pub mod need;
 pub mod orders;
@@ -42,6 +43,7 @@ pub mod timing;
 mod words;
 
 pub use answer::{Question, answer};
+pub use input::Input;
 pub use need::Need;
 pub use point::Point;
 pub use results::Study;

@@ -9,6 +9,7 @@
 //! | what accuracy costs in time | [`accuracy`] |
 //! | the hard cases, and their verdicts | [`stability`] |
 //! | where the device stays quiet on a leg | [`coupled`] |
+//! | what friction laws cost and how far they go | [`laws`] |
 //! | influence of each effect on the torque at the hand, and its cost | [`effects`] |
 //! | what the hand gets of the actuator on the shell | [`vibration`] |
 //! | the other symptoms, stepped and by their reference | [`symptoms`] |
@@ -29,8 +30,9 @@ pub mod accuracy;
 pub mod coupled;
 pub mod effects;
 pub mod event_errors;
+pub mod laws;
 pub mod limits;
-mod machine;
+pub mod machine;
 pub mod matching;
 mod outcome;
 mod parallel;

@@ -6,9 +6,9 @@ use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Settings};
 use crepitus_plant::Motion;
 use crepitus_plant::recording::{AngleUnit, Angles, Quantity, Source, read, smooth};
-use crepitus_studies::accuracy::StudyScene;
 use crepitus_studies::accuracy::convergence::{motions, orders_on, run_at};
 use crepitus_studies::accuracy::orders::{Order, Orders};
+use crepitus_studies::accuracy::{Input, StudyScene};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -221,6 +221,7 @@ fn recorded_knees_have_the_same_orders() {
                 // A recording has no end of its own: what follows is undefined.
                 duration_s: samples.duration_s() - 0.05,
                 settings: settings.validate().unwrap(),
+                input: Input::Exact,
             });
         }
     }

@@ -7,6 +7,7 @@
 //! its path. Only events are compared: nothing is timed, and every rung computes
 //! in f64.
 
+use crate::accuracy::input::Input;
 use crate::accuracy::orders::{Orders, order, shortest_step_s};
 use crate::accuracy::scenes::{StudyScene, paper};
 use crate::event_errors::EventErrors;
@@ -50,37 +51,20 @@ pub struct Run {
 /// # Errors
 /// None in practice: the paper's settings are valid under every convention.
 pub fn motions() -> Result<Vec<StudyScene>, SettingsError> {
-    let strokes = Strokes {
-        from_rad: 0.0,
-        to_rad: 60_f64.to_radians(),
-        peak_speed_rad_s: 60_f64.to_radians(),
-        pause_s: 0.1,
-    };
-    let motions = [
-        (
-            "constant-speed",
-            "0.988 rad/s",
-            Some(Motion::constant(0.988)),
-        ),
-        (
-            "sine",
-            "45° at 0.25 Hz, from rest",
-            Some(Motion::sine(45_f64.to_radians(), 0.25, -90.0)),
-        ),
-        (
-            "strokes",
-            "minimum-jerk strokes of 60° with a peak of 60°/s",
-            Some(Motion::Strokes(strokes)),
-        ),
-        (
-            "recorded-knee",
-            "knee bends sampled at 100 Hz, as a recording is read: a C² spline",
-            knee_bends(),
-        ),
-    ];
+    let speed = ("constant-speed", "0.988 rad/s", Motion::constant(0.988));
+    let sine = (
+        "sine",
+        "45° at 0.25 Hz, from rest",
+        Motion::sine(45_f64.to_radians(), 0.25, -90.0),
+    );
+    let names = ["strokes", "recorded-knee"];
+    let hands = names
+        .into_iter()
+        .zip(hands())
+        .map(|(name, (_, title, motion))| (name, title, motion));
+    let motions = [speed, sine].into_iter().chain(hands);
     let mut scenes = Vec::new();
     for (name, title, motion) in motions {
-        let Some(motion) = motion else { continue };
         for convention in Convention::ALL {
             if name == "constant-speed" && convention == Convention::Paper {
                 continue;
@@ -91,10 +75,31 @@ pub fn motions() -> Result<Vec<StudyScene>, SettingsError> {
                 motion: motion.clone(),
                 duration_s: DURATION_S,
                 settings: paper(convention)?,
+                input: Input::Exact,
             });
         }
     }
     Ok(scenes)
+}
+
+/// Motions of a hand: name in the study of costs, description, motion.
+pub(super) fn hands() -> Vec<(&'static str, &'static str, Motion)> {
+    let strokes = Strokes {
+        from_rad: 0.0,
+        to_rad: 60_f64.to_radians(),
+        peak_speed_rad_s: 60_f64.to_radians(),
+        pause_s: 0.1,
+    };
+    let strokes = (
+        "hand-strokes",
+        "minimum-jerk strokes of 60° with a peak of 60°/s",
+        Motion::Strokes(strokes),
+    );
+    let knee = knee_bends().map(|motion| {
+        let title = "knee bends sampled at 100 Hz, as a recording is read: a C² spline";
+        ("knee-bends", title, motion)
+    });
+    [strokes].into_iter().chain(knee).collect()
 }
 
 /// Two knee bends and a half, as a camera sees them.

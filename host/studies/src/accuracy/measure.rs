@@ -2,6 +2,7 @@
 //! the reference's.
 
 use crate::accuracy::held_torque::HeldTorque;
+use crate::accuracy::input::Feed;
 use crate::accuracy::reference_torque::ReferenceTorque;
 use crate::accuracy::scenes::StudyScene;
 use crate::event_errors::EventErrors;
@@ -76,7 +77,7 @@ fn run<F: Precise>(target: &ReferenceRun<'_>, solver: Solver) -> Result<Observed
     } = target;
     let omega = F::from_f64(scene.motion.at(0.0).omega_rad_s);
     let joint = AnyJoint::new(&scene.settings, solver, sampling.step_s(), omega)?;
-    Ok(observe(target, joint))
+    observe(target, joint)
 }
 
 /// Observations of a run.
@@ -111,7 +112,10 @@ impl Errors {
 }
 
 /// Runs a joint and observes every step.
-fn observe<F: Precise>(target: &ReferenceRun<'_>, mut joint: AnyJoint<F>) -> Observed {
+fn observe<F: Precise>(
+    target: &ReferenceRun<'_>,
+    mut joint: AnyJoint<F>,
+) -> Result<Observed, SettingsError> {
     let ReferenceRun {
         scene,
         sampling,
@@ -130,11 +134,11 @@ fn observe<F: Precise>(target: &ReferenceRun<'_>, mut joint: AnyJoint<F>) -> Obs
         lead: Lead::new(&scene.settings, sampling.step_s(), F::IS_SINGLE),
         finite: true,
     };
-    let mut walk = sampling.walk_from(0);
+    let mut feed = Feed::new(scene, sampling, 0)?;
     let mut chunk = Vec::with_capacity(CHUNK_STEPS);
     let (mut n, mut index, mut tie) = (0_u64, 0_usize, 0_usize);
     loop {
-        walk.fill(&mut chunk, CHUNK_STEPS);
+        feed.fill(&mut chunk, CHUNK_STEPS);
         if chunk.is_empty() {
             break;
         }
@@ -174,7 +178,7 @@ fn observe<F: Precise>(target: &ReferenceRun<'_>, mut joint: AnyJoint<F>) -> Obs
             && observed.held.squares.is_finite();
     }
     observed.finite &= observed.events.iter().all(|e| e.time_s.is_finite());
-    observed
+    Ok(observed)
 }
 
 fn accuracy(target: &ReferenceRun<'_>, observed: &Observed) -> Accuracy {

@@ -66,7 +66,7 @@ pub enum Order {
 /// order.
 pub fn orders(points: &[Point]) -> Vec<Orders> {
     let mut orders: Vec<Orders> = Vec::new();
-    for point in points {
+    for point in points.iter().filter(|p| p.is_exact()) {
         let is_same = |scene: &str, convention: &str, solver: &str| {
             scene == point.scene && convention == point.convention && solver == point.solver
         };
@@ -79,7 +79,7 @@ pub fn orders(points: &[Point]) -> Vec<Orders> {
         let matched: Vec<&Point> = points
             .iter()
             .filter(|p| is_same(&p.scene, p.convention, p.solver))
-            .filter(|p| p.precision == "f64" && p.unmatched == 0)
+            .filter(|p| p.is_exact() && p.precision == "f64" && p.unmatched == 0)
             .filter(|p| p.step_s >= shortest_step_s(p.solver) * (1.0 - 1e-9))
             .collect();
         let order_of = |error: fn(&Point) -> f64| {
@@ -198,6 +198,14 @@ mod tests {
             }
         });
         assert_eq!(o.event_time, Order::TooFewPoints { points: 2 });
+    }
+
+    #[test]
+    fn the_encoder_has_no_order() {
+        let mut points = [point("exact", 1e-3), point("exact", 1e-4)];
+        points[0].input = "encoder";
+        assert_eq!(orders(&points).len(), 1);
+        assert!(orders(&points[..1]).is_empty());
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! One point of a work-precision diagram: one solver at one step on one scene.
 
+use crate::accuracy::input::Input;
 use serde::Serialize;
 
 /// A measured point. Errors are against the event-driven reference, over
@@ -12,6 +13,8 @@ pub struct Point {
     pub scene: String,
     /// Convention of the stick-slip object.
     pub convention: &'static str,
+    /// Knowledge of the shaft, `exact` or `encoder`: see [`input`](crate::accuracy::input).
+    pub input: &'static str,
     /// The rung of the ladder.
     pub solver: &'static str,
     /// `f32` or `f64`.
@@ -53,6 +56,10 @@ pub struct Point {
     pub behind_j: f64,
     /// CPU time of the host per step, ns: median of interleaved repeats.
     pub ns_per_step: f64,
+    /// First quartile of the repeats, ns.
+    pub ns_per_step_q1: f64,
+    /// Third quartile of the repeats, ns.
+    pub ns_per_step_q3: f64,
     /// CPU time of the host per simulated second, µs.
     pub us_per_simulated_s: f64,
     /// Spread of the repeats: (third quartile − first quartile)/median.
@@ -65,6 +72,13 @@ pub struct Point {
     pub instructions_per_step: f64,
 }
 
+impl Point {
+    /// Returns whether the rung had the true motion, and not the device's view of it.
+    pub fn is_exact(&self) -> bool {
+        self.input == Input::Exact.name()
+    }
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
@@ -74,6 +88,7 @@ pub(crate) mod tests {
         Point {
             scene: "constant-1".to_owned(),
             convention: "frozen",
+            input: "exact",
             solver,
             precision: "f32",
             step_s,
@@ -92,6 +107,8 @@ pub(crate) mod tests {
             behind_s: 0.0,
             behind_j: 0.0,
             ns_per_step: 4.0,
+            ns_per_step_q1: 3.98,
+            ns_per_step_q3: 4.02,
             us_per_simulated_s: 4e-3 / step_s,
             time_spread: 0.01,
             cycles_per_step: f64::NAN,

@@ -49,6 +49,8 @@ pub struct StudiedScene {
     pub title: String,
     /// Convention of the scene.
     pub convention: &'static str,
+    /// Knowledge that the rungs had of the shaft.
+    pub input: &'static str,
     /// Duration of the scene, s.
     pub duration_s: f64,
     /// Events of the reference.

@@ -4,11 +4,18 @@
 //! sticking, and one hand-like sine. Of the constant speeds only at 0.5 and
 //! 2 rad/s the first stick lasts a whole number of device ticks; 0.12 and 0.988
 //! are incommensurate with every step, so that no rung looks good by luck.
+//!
+//! The full set adds hands, strokes and knee bends, on the joint of every preset that
+//! is crepitus alone (the paper's is `coarse`); and a speed and the paper's hands behind the
+//! encoder of the device.
 
+use crate::accuracy::convergence;
+use crate::accuracy::input::Input;
 use crate::true_events::{TrueEvent, true_events, true_events_while};
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use crepitus_plant::Motion;
 use crepitus_scene::Scene;
+use crepitus_scene::preset::{Joint, joints};
 
 /// Constant speeds of the standard set: name and rad/s.
 const SPEEDS: [(&str, f64); 4] = [
@@ -28,6 +35,12 @@ const SINE_HZ: f64 = 0.25;
 /// Duration of the sine, s: there and back once.
 const SINE_S: f64 = 4.0;
 
+/// Duration of strokes and knee bends, s: there and back at least once.
+const HAND_S: f64 = 4.0;
+
+/// The scenes that are studied behind the encoder, too.
+const BEHIND_THE_ENCODER: [&str; 3] = ["constant-0.988", "hand-strokes", "knee-bends"];
+
 /// One motion under one convention.
 #[derive(Clone, Debug)]
 pub struct StudyScene {
@@ -41,6 +54,8 @@ pub struct StudyScene {
     pub duration_s: f64,
     /// The stick-slip object.
     pub settings: Validated<Settings>,
+    /// Knowledge that a rung has of the motion.
+    pub input: Input,
 }
 
 impl StudyScene {
@@ -77,6 +92,7 @@ impl StudyScene {
             motion: scene.motion.clone(),
             duration_s: scene.duration_s,
             settings: crepitus.settings,
+            input: Input::Exact,
         })
     }
 }
@@ -97,6 +113,7 @@ pub fn standard() -> Result<Vec<StudyScene>, SettingsError> {
                 motion: Motion::constant(speed),
                 duration_s: CONSTANT_S,
                 settings: paper(convention)?,
+                input: Input::Exact,
             });
         }
     }
@@ -107,9 +124,60 @@ pub fn standard() -> Result<Vec<StudyScene>, SettingsError> {
             motion: Motion::sine(SINE_DEG.to_radians(), SINE_HZ, -90.0),
             duration_s: SINE_S,
             settings: paper(convention)?,
+            input: Input::Exact,
         });
     }
     Ok(scenes)
+}
+
+/// The full set; the standard one is its beginning.
+///
+/// # Errors
+/// None in practice: the settings of presets are valid.
+pub fn full() -> Result<Vec<StudyScene>, SettingsError> {
+    let mut scenes = standard()?;
+    for (place, joint) in joints().iter().enumerate() {
+        for (name, title, motion) in convergence::hands() {
+            for convention in [Convention::Frozen, Convention::Physical] {
+                let settings = Settings {
+                    parameters: joint.parameters,
+                    ..*paper(convention)?
+                };
+                let (name, of) = match place {
+                    0 => (name.to_owned(), String::new()),
+                    _ => (format!("{name}-{}", joint.name), in_words(joint)),
+                };
+                scenes.push(StudyScene {
+                    name,
+                    title: format!("{title} for {HAND_S} s{of}"),
+                    motion: motion.clone(),
+                    duration_s: HAND_S,
+                    settings: settings.validate()?,
+                    input: Input::Exact,
+                });
+            }
+        }
+    }
+    let mut behind = scenes.clone();
+    behind.retain(|scene| BEHIND_THE_ENCODER.contains(&scene.name.as_str()));
+    for scene in &mut behind {
+        scene.input = Input::Encoder;
+    }
+    scenes.extend(behind);
+    Ok(scenes)
+}
+
+/// A joint that is not the paper's.
+fn in_words(joint: &Joint) -> String {
+    let p = &joint.parameters;
+    format!(
+        ", preset {}: J {} kg·m², kr {} N·m/rad, Tk {} and Ts {} N·m",
+        joint.name,
+        p.inertia_kg_m2,
+        p.stiffness_nm_per_rad,
+        p.kinetic_torque_nm,
+        p.static_torque_nm
+    )
 }
 
 /// The paper's parameters under a convention.
@@ -141,5 +209,38 @@ mod tests {
         assert_eq!(sine.motion.at(0.0).omega_rad_s, 0.0);
         let peak = 45_f64.to_radians() * std::f64::consts::TAU * 0.25;
         assert!((sine.motion.at(1.0).omega_rad_s - peak).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_full_set_has_every_joint_on_every_hand_and_the_device_s_view() {
+        let scenes = full().unwrap();
+        let joints = joints();
+        assert!(joints.len() >= 3);
+        assert_eq!(joints[0].parameters, Settings::default().parameters);
+        let of = |joint: &Joint, name: &str, input| {
+            let is_of = |s: &&StudyScene| {
+                s.settings.parameters == joint.parameters
+                    && s.name.starts_with(name)
+                    && s.input == input
+            };
+            scenes.iter().filter(is_of).count()
+        };
+        for (place, joint) in joints.iter().enumerate() {
+            let behind = if place == 0 { 2 } else { 0 };
+            for name in ["hand-strokes", "knee-bends"] {
+                assert_eq!(of(joint, name, Input::Exact), 2, "{name} {}", joint.name);
+                assert_eq!(of(joint, name, Input::Encoder), behind);
+            }
+        }
+        assert_eq!(of(&joints[0], "constant-0.988", Input::Encoder), 2);
+        // A name, a convention and an input are one scene.
+        let mut keys: Vec<_> = scenes
+            .iter()
+            .map(|s| (&s.name, s.convention(), s.input.name()))
+            .collect();
+        keys.sort_unstable();
+        keys.dedup();
+        assert_eq!(keys.len(), scenes.len());
+        assert_eq!(scenes.len(), 11 + 4 * joints.len() + 6);
     }
 }

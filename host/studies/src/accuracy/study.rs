@@ -1,6 +1,7 @@
 //! The whole study: every rung × precision × step on every scene.
 
 use crate::accuracy::held_torque::HeldTorque;
+use crate::accuracy::input::Input;
 use crate::accuracy::measure::{Accuracy, ReferenceRun, measure};
 use crate::accuracy::orders::orders;
 use crate::accuracy::point::Point;
@@ -62,11 +63,12 @@ pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<Study, StudyError> 
     };
     for scene in &plan.scenes {
         let truth = scene.true_events_while(|| work.add(0.0))?;
-        let contestants = contestants(plan, scene.settings.convention);
+        let contestants = contestants(plan, scene);
         let mut studied = StudiedScene {
             name: scene.name.clone(),
             title: scene.title.clone(),
             convention: scene.convention(),
+            input: scene.input.name(),
             duration_s: scene.duration_s,
             events_true: truth.len(),
             reference_behind_s: 0.0,
@@ -165,6 +167,7 @@ fn point(
     Point {
         scene: scene.name.clone(),
         convention: scene.convention(),
+        input: scene.input.name(),
         solver: solver.name(),
         precision: precision.name(),
         step_s,
@@ -183,6 +186,8 @@ fn point(
         behind_s: accuracy.behind_s,
         behind_j: accuracy.behind_j,
         ns_per_step: cost.ns_per_step,
+        ns_per_step_q1: cost.quartiles_ns[0],
+        ns_per_step_q3: cost.quartiles_ns[1],
         us_per_simulated_s: cost.ns_per_step * 1e-3 / step_s,
         time_spread: cost.spread,
         cycles_per_step: f64::NAN,
@@ -191,12 +196,15 @@ fn point(
     }
 }
 
-/// The rungs with a meaning, in each precision.
-fn contestants(plan: &Plan, convention: Convention) -> Vec<Contestant> {
+/// The rungs with a meaning, in each precision; behind the encoder in the device's, if that is
+/// studied.
+fn contestants(plan: &Plan, scene: &StudyScene) -> Vec<Contestant> {
+    let is_device = |p: &Precision| scene.input == Input::Exact || *p == Precision::F32;
     Solver::ALL
         .into_iter()
-        .filter(|s| s.refusal(convention).is_none())
+        .filter(|s| s.refusal(scene.settings.convention).is_none())
         .flat_map(|solver| plan.precisions.iter().map(move |p| (solver, *p)))
+        .filter(|(_, p)| is_device(p))
         .filter(|(s, p)| *p == Precision::F64 || s.single_refusal().is_none())
         .collect()
 }
@@ -239,9 +247,7 @@ fn timed_work(sampling: &Sampling<'_>) -> f64 {
 fn total_work(plan: &Plan) -> f64 {
     let mut total = 0.0;
     for scene in &plan.scenes {
-        let rungs = f64::from_whole(
-            u64::try_from(contestants(plan, scene.settings.convention).len()).unwrap_or(0),
-        );
+        let rungs = f64::from_whole(u64::try_from(contestants(plan, scene).len()).unwrap_or(0));
         let repeats = f64::from_whole(u64::try_from(plan.repeats).unwrap_or(0));
         for &step_s in &falling(&plan.steps_s) {
             let sampling = Sampling::new(&scene.motion, scene.duration_s, step_s);

@@ -144,7 +144,7 @@ pub fn costs<T>(
                 .map_err(StudyError::from)?;
         }
         on.steps += cost_of_subject.all.calls;
-        let frequency = frequency_error(points, *subject);
+        let frequency = frequency_error(points, *subject, scenes);
         on.rows.push(cost_of_subject.row(*subject, frequency));
     }
     Ok(on)
@@ -154,12 +154,14 @@ fn whole(n: usize) -> f64 {
     f64::from_whole(u64::try_from(n).unwrap_or(u64::MAX))
 }
 
-/// A subject with a joint is studied under the conventions of the scenes.
+/// A subject with a joint is studied under the conventions of the scenes; friction laws are not
+/// here.
 fn is_studied(subject: Subject, scenes: &[StudyScene]) -> bool {
-    subject.convention().is_none_or(|convention| {
-        let mut conventions = scenes.iter().map(|scene| scene.settings.convention);
-        conventions.any(|here| here == convention)
-    })
+    subject.law().is_none()
+        && subject.convention().is_none_or(|convention| {
+            let mut conventions = scenes.iter().map(|scene| scene.settings.convention);
+            conventions.any(|here| here == convention)
+        })
 }
 
 impl Row {
@@ -172,14 +174,15 @@ impl Row {
     }
 }
 
-/// Returns whether a point has the device's precision and tick.
+/// Returns whether a point has the device's precision and tick, and the shaft's true motion.
 fn is_on_the_device(point: &Point) -> bool {
-    point.precision == Precision::F32.name()
+    point.is_exact()
+        && point.precision == Precision::F32.name()
         && (point.step_s - inputs::TICK_S).abs() < 1e-6 * inputs::TICK_S
 }
 
 /// The worst frequency error of a rung under its convention.
-fn frequency_error(points: &[Point], subject: Subject) -> f64 {
+fn frequency_error(points: &[Point], subject: Subject, scenes: &[StudyScene]) -> f64 {
     let Subject::Rung(convention, solver) = subject else {
         return f64::NAN;
     };
@@ -187,6 +190,7 @@ fn frequency_error(points: &[Point], subject: Subject) -> f64 {
         is_on_the_device(point)
             && point.convention == convention.name()
             && point.solver == solver.name()
+            && scenes.iter().any(|scene| scene.name == point.scene)
     });
     let errors = points.map(|point| {
         if point.unmatched == 0 {

@@ -9,6 +9,7 @@
 //! time in the opposite order, so that a machine that slows down or speeds up
 //! affects all alike.
 
+use crate::accuracy::input::Feed;
 use crate::accuracy::scenes::StudyScene;
 use crate::sampling::{CHUNK_STEPS, Sampling};
 use crepitus_ladder::loops::{Loops, Stepper};
@@ -33,6 +34,8 @@ pub type Contestant = (Solver, Precision);
 pub struct Cost {
     /// Median of the repeats, ns of CPU time.
     pub ns_per_step: f64,
+    /// First and third quartile of the repeats, ns.
+    pub quartiles_ns: [f64; 2],
     /// (third quartile − first quartile)/median of the repeats.
     pub spread: f64,
 }
@@ -49,7 +52,7 @@ pub fn time<E: From<SettingsError>>(
     repeats: usize,
     mut after_each: impl FnMut() -> Result<(), E>,
 ) -> Result<Vec<Cost>, E> {
-    let track = Track::new(scene, sampling);
+    let track = Track::new(scene, sampling)?;
     let mut nanoseconds = vec![Vec::with_capacity(repeats); contestants.len()];
     for repeat in 0..repeats {
         for turn in 0..contestants.len() {
@@ -81,20 +84,23 @@ pub(super) struct Track<'a> {
 }
 
 impl<'a> Track<'a> {
-    pub(super) fn new(scene: &'a StudyScene, sampling: &Sampling<'_>) -> Self {
+    pub(super) fn new(
+        scene: &'a StudyScene,
+        sampling: &Sampling<'_>,
+    ) -> Result<Self, SettingsError> {
         let length = sampling.steps().min(MOST_STEPS);
         let start = (sampling.steps() / 4).saturating_sub(length / 2);
         let most = usize::try_from(length).unwrap_or(usize::MAX);
         let (mut single, mut double) = (Vec::new(), Vec::new());
-        sampling.walk_from(start).fill(&mut single, most);
-        sampling.walk_from(start).fill(&mut double, most);
-        Self {
+        Feed::new(scene, sampling, start)?.fill(&mut single, most);
+        Feed::new(scene, sampling, start)?.fill(&mut double, most);
+        Ok(Self {
             scene,
             step_s: sampling.step_s(),
             reading: cpu_time::reading_cost(),
             single,
             double,
-        }
+        })
     }
 
     pub(super) fn ns_per_step(
@@ -120,7 +126,7 @@ impl<'a> Track<'a> {
 
 /// CPU time of a step, ns: `once` goes through all steps and adds what that took, until enough are
 /// timed.
-pub(super) fn ns_per_step<S>(
+pub(crate) fn ns_per_step<S>(
     steps: &[S],
     mut once: impl FnMut(&mut Duration) -> Result<(), SettingsError>,
 ) -> Result<f64, SettingsError> {
@@ -135,7 +141,7 @@ pub(super) fn ns_per_step<S>(
 
 /// CPU time in which a loop goes through all steps, in chunks that are brought into the cache before the
 /// clock starts; reading it takes `reading`.
-pub(super) fn stepping<S: Copy>(
+pub(crate) fn stepping<S: Copy>(
     steps: &[S],
     reading: Duration,
     stepper: Stepper<'_, S>,
@@ -154,12 +160,14 @@ pub(super) fn stepping<S: Copy>(
 }
 
 /// Median and spread.
-pub(super) fn cost(times: &mut [f64]) -> Cost {
+pub(crate) fn cost(times: &mut [f64]) -> Cost {
     times.sort_by(f64::total_cmp);
     let median = quantile(times, 0.5);
+    let quartiles_ns @ [first, third] = [0.25, 0.75].map(|q| quantile(times, q));
     Cost {
         ns_per_step: median,
-        spread: (quantile(times, 0.75) - quantile(times, 0.25)) / median,
+        quartiles_ns,
+        spread: (third - first) / median,
     }
 }
 
@@ -186,6 +194,7 @@ mod tests {
     fn median_and_quartiles() {
         let cost = cost(&mut [5.0, 1.0, 4.0, 2.0, 3.0]);
         assert_eq!(cost.ns_per_step, 3.0);
+        assert_eq!(cost.quartiles_ns, [2.0, 4.0]);
         assert!((cost.spread - 2.0 / 3.0).abs() < 1e-15);
         assert_eq!(quantile(&[1.0, 2.0], 0.5), 1.5);
         assert!(quantile(&[], 0.5).is_nan());

@@ -132,7 +132,7 @@ fn notes(study: &Study) -> Vec<String> {
             .to_owned(),
         format!(
             "Time is {CLOCK}, of the stepping alone: the step, its events and the torque it leaves, with the motion \
-             prepared beforehand; the median of {} repeats in which all solvers take turns.",
+             prepared beforehand; the median of {} repeats in which all solvers take turns, and their quartiles.",
             study.timing_repeats
         ),
     ];
@@ -158,7 +158,7 @@ fn missed_ends(study: &Study) -> Vec<String> {
             )
         })
         .collect();
-    let behind = |p: &&Point| p.convention != may_be_behind && p.behind_s > 0.0;
+    let behind = |p: &&Point| p.is_exact() && p.convention != may_be_behind && p.behind_s > 0.0;
     if let Some(worst) = study
         .points
         .iter()
@@ -201,7 +201,7 @@ fn studied(study: &Study) -> Section {
         .iter()
         .map(|s| {
             (
-                format!("{}, {}", s.name, s.convention),
+                format!("{}, {}{}", s.name, s.convention, table::behind(s.input)),
                 format!("{}; {} events", s.title, s.events_true),
             )
         })

@@ -204,6 +204,8 @@ fn titles_tell_rung_step_error_and_cost() {
         .expect("a title");
     let title = title.split('<').next().expect("its text");
     assert!(title.contains("·10⁻⁸ s, cost 7"), "{title}");
+    // The quartiles of the repeats.
+    assert!(title.contains(" (5") && title.contains("–1"), "{title}");
     assert!(title.ends_with("µs per simulated second"), "{title}");
     assert_eq!(count(&page, "<details"), 0);
 }
@@ -271,6 +273,7 @@ fn every_rung_has_its_own_curve() {
         .skip(1)
         .filter_map(|entry| entry.split("</svg>").next())
         .collect();
+    assert_eq!(count(legend, "bar: quartiles of the timings"), 1);
     // Ten rungs and the filled sign.
     assert_eq!(samples.len(), 11);
     samples.sort_unstable();
@@ -317,6 +320,87 @@ fn no_points_and_odd_points() {
         many.push(point);
     }
     page("many", &many, &text("Many rungs"));
+}
+
+/// Left ends and widths of the error bars of the first rung, CSS pixels.
+fn bars(svg: &str) -> Vec<(f64, f64)> {
+    let paths = svg.split("<path d=\"").skip(1);
+    let of_rung = |path: &&str| {
+        let tag = path.split('>').next().unwrap_or_default();
+        // A leader to a name is one line.
+        tag.matches('M').count() > 3
+            && tag.contains("#d55e00")
+            && tag.contains("stroke-width=\"1\"")
+    };
+    let lines = paths
+        .filter(of_rung)
+        .flat_map(|path| path.split('"').next().unwrap_or_default().split('M'));
+    let bar = |line: &str| {
+        let (start, way) = line.split_once('l')?;
+        let left = start.split_once(' ')?.0.parse().ok()?;
+        let (width, height) = way.split_once(' ')?;
+        // The others are the caps.
+        (height == "0").then_some((left, width.parse().ok()?))
+    };
+    lines.filter_map(bar).collect()
+}
+
+#[test]
+fn error_bars_span_the_quartiles_of_the_cost() {
+    let mut points = study::pair("constant-0.988", "physical");
+    points.retain(|point| point.solver == "exact" && point.precision == "f32");
+    for point in &mut points {
+        point.ns_per_step = 4.0;
+        point.ns_per_step_q1 = 3.2;
+        point.ns_per_step_q3 = 6.0;
+        point.us_per_simulated_s = 4e-3 / point.step_s;
+    }
+    let pictures = pictures(&points, Paper::Screen);
+    assert_eq!(pictures.len(), 4);
+    for picture in pictures {
+        let bars = bars(&picture.svg);
+        assert_eq!(bars.len(), study::STEPS.len(), "{}", picture.name);
+        // Steps of 1 and of 0.1 ms.
+        let decade = bars[3].0 - bars[0].0;
+        let width = (6.0_f64 / 3.2).log10() * decade;
+        for (_, found) in bars {
+            assert!(
+                decade > 50.0 && (found - width).abs() < 0.3,
+                "{found} {width}"
+            );
+        }
+    }
+}
+
+#[test]
+fn curves_behind_the_encoder_stand_beside_the_others_with_bars_of_the_quartiles() {
+    let mut points = study::pair("constant-0.988", "frozen");
+    let alone = pictures(&points, Paper::Screen).len();
+    let mut behind = points.clone();
+    behind.retain(|point| point.precision == "f32");
+    for point in &mut behind {
+        point.input = "encoder";
+        point.max_event_error_s = 2e-5;
+        // Its own cost: the same axis has room for it.
+        for time in [
+            &mut point.ns_per_step,
+            &mut point.ns_per_step_q1,
+            &mut point.ns_per_step_q3,
+            &mut point.us_per_simulated_s,
+        ] {
+            *time *= 4.0;
+        }
+    }
+    points.extend(behind);
+    let page = page("encoder", &points, &text("Behind the encoder"));
+    assert_eq!(count(&page, "role=\"img\""), 4 * 3);
+    assert_eq!(count(&page, "<figcaption>f32, encoder</figcaption>"), 4);
+    assert_eq!(count(&page, "Encoder: the rung has counts"), 4);
+    assert!(page.contains("exact, f32, encoder, step 50 µs: error 2.0·10⁻⁵ s"));
+    let shown = pictures(&points, Paper::Screen);
+    assert_eq!((alone, shown.len()), (8, 12));
+    let of = |name: &str| shown.iter().find(|p| p.name == name).expect("a picture");
+    of("event-time-constant-0-988-frozen-f32-encoder");
 }
 
 #[test]

@@ -150,7 +150,9 @@ impl Candidate {
 pub(super) fn asked<'p>(points: &'p [Point], question: &Question<'_>) -> Vec<&'p Point> {
     points
         .iter()
-        .filter(|p| p.convention == question.convention && p.precision == question.precision)
+        .filter(|p| {
+            p.is_exact() && p.convention == question.convention && p.precision == question.precision
+        })
         .filter(|p| question.step_s.is_none_or(|h| p.step_s == h))
         .collect()
 }

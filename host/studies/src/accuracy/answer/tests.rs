@@ -65,6 +65,20 @@ fn a_need_holds_on_all_scenes_or_not_at_all() {
 }
 
 #[test]
+fn what_the_encoder_costs_is_no_solver_s_fault() {
+    let mut points = rung("a", 5e-5, 2.0, 1e-3, 1e-5).to_vec();
+    let behind = points.clone().into_iter().map(|p| Point {
+        input: "encoder",
+        unmatched: 3,
+        rms_held_torque_error_nm: 1.0,
+        ..p
+    });
+    points.extend(behind.collect::<Vec<_>>());
+    let a = ask(&points, "torque=5e-3", Some(5e-5));
+    assert_eq!(name(a.chosen.as_ref()), Some(("a", 5e-5)));
+}
+
+#[test]
 fn unmatched_events_fail_however_small_the_errors() {
     let mut points = [
         rung("a", 5e-5, 2.0, 1e-9, 1e-9),

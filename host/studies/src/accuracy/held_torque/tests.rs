@@ -1,4 +1,5 @@
 use super::*;
+use crate::accuracy::input::Input;
 use crate::accuracy::measure::{Accuracy, ReferenceRun, measure};
 use crate::accuracy::reference_torque::ReferenceTorque;
 use crate::accuracy::scenes::standard;
@@ -23,6 +24,7 @@ fn scene(convention: Convention, motion: Motion, duration_s: f64) -> StudyScene 
         motion,
         duration_s,
         settings: settings.validate().unwrap(),
+        input: Input::Exact,
     }
 }
 

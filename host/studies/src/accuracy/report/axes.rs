@@ -11,6 +11,25 @@ use crepitus_pages::plot::{Plot, extent};
 /// Errors above this are not compared.
 const HIGHEST: f64 = 1e100;
 
+/// Cost of a point, µs per simulated second: first quartile, median, third quartile. A
+/// quartile that no axis can show is the median.
+pub(crate) fn costs(point: &Point) -> [f64; 3] {
+    let median = point.us_per_simulated_s;
+    [
+        point.ns_per_step_q1,
+        point.ns_per_step,
+        point.ns_per_step_q3,
+    ]
+    .map(|ns| {
+        let us = median * ns / point.ns_per_step;
+        if us > 0.0 && us.is_finite() {
+            us
+        } else {
+            median
+        }
+    })
+}
+
 /// See the module.
 #[derive(Debug)]
 pub(crate) struct Axes {
@@ -27,7 +46,7 @@ impl Axes {
         measure: Measure,
     ) -> Option<Self> {
         let points: Vec<&Point> = points.collect();
-        let (cheapest, dearest) = extent(points.iter().map(|p| p.us_per_simulated_s));
+        let (cheapest, dearest) = extent(points.iter().copied().flat_map(costs));
         let errors = points.iter().map(|p| measure.of(p));
         let lines = measure.lines().iter().map(|line| line.value);
         let (smallest, largest) = extent(errors.filter(|e| *e >= FLOOR).chain(lines));
@@ -50,6 +69,13 @@ impl Axes {
             error: foot..=above(largest),
             nothing: 10.0 * foot,
         })
+    }
+
+    /// Ends of the bar from the first to the third quartile of the cost.
+    pub(crate) fn bar(&self, plot: &Plot, measure: Measure, point: &Point) -> [(f64, f64); 2] {
+        let (_, y) = self.place(plot, measure, point);
+        let [first, _, third] = costs(point).map(|cost| plot.at((cost, self.nothing)).0);
+        [(first, y), (third, y)]
     }
 
     /// CSS pixels of the whole drawing.

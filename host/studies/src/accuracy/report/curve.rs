@@ -3,7 +3,7 @@
 use crate::accuracy::Point;
 
 use super::measure::Measure;
-use super::pair::Pair;
+use super::pair::{Pair, View};
 
 /// An error of nothing, or less than this, is drawn at the foot of the
 /// diagram with an arrow down.
@@ -31,7 +31,7 @@ pub(crate) fn unfit(point: &Point, measure: Measure) -> Option<Unfit> {
     }
 }
 
-/// One rung at one precision.
+/// One rung in one view.
 #[derive(Debug)]
 pub(crate) struct Curve<'p> {
     /// Place of the rung among those of the study.
@@ -47,10 +47,10 @@ impl<'p> Curve<'p> {
     pub(crate) fn new(
         pair: &Pair<'p>,
         (rung, name): (usize, &'static str),
-        precision: &str,
+        view: View,
         measure: Measure,
     ) -> Option<Self> {
-        let points = pair.of(name, precision);
+        let points = pair.of(name, view);
         let pieces: Vec<Vec<&Point>> = points
             .split(|point| unfit(point, measure).is_some())
             .filter(|piece| !piece.is_empty())

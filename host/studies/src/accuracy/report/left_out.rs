@@ -5,16 +5,16 @@ use maud::{Markup, html};
 
 use super::curve::{Unfit, unfit};
 use super::measure::Measure;
-use super::pair::{Pair, Study};
+use super::pair::{Pair, Study, View};
 use crepitus_pages::plot::number::{count, duration};
 use crepitus_pages::plot::page::scrolling;
 use crepitus_pages::table::Table;
 
-/// The points of one rung at one precision that are missing for one reason.
+/// The points of one rung in one view that are missing for one reason.
 #[derive(Debug)]
 struct Row {
     rung: &'static str,
-    precision: &'static str,
+    precision: String,
     reason: &'static str,
     /// Steps from the longest to the shortest.
     steps: Vec<String>,
@@ -35,21 +35,21 @@ const WRONG_EVENTS: &str = "wrong events";
 fn rows(study: &Study, pair: &Pair) -> Vec<Row> {
     let mut rows = Vec::new();
     for rung in &study.rungs {
-        for precision in &study.precisions {
-            rows.extend(rows_of(pair, rung, precision));
+        for view in &study.views {
+            rows.extend(rows_of(pair, rung, *view));
         }
     }
     rows
 }
 
-fn rows_of(pair: &Pair, rung: &'static str, precision: &'static str) -> Vec<Row> {
-    let points = pair.of(rung, precision);
+fn rows_of(pair: &Pair, rung: &'static str, view: View) -> Vec<Row> {
+    let points = pair.of(rung, view);
     let mut rows = Vec::new();
     let mut row = |reason, steps: Vec<String>| {
         if !steps.is_empty() {
             rows.push(Row {
                 rung,
-                precision,
+                precision: view.name(),
                 reason,
                 steps,
             });
@@ -101,7 +101,7 @@ pub(crate) fn table(study: &Study, pair: &Pair) -> Markup {
 fn listed(rows: &[Row]) -> Table<'_, Row> {
     Table::of(rows)
         .people("rung", |row| row.rung)
-        .people("precision", |row| row.precision)
+        .people("precision", |row| row.precision.as_str())
         .people("why", |row| row.reason)
         .people("steps", |row| row.steps.join("; "))
 }

@@ -1,6 +1,6 @@
 //! The page of the study.
 
-use crate::accuracy::Study as Results;
+use crate::accuracy::{Point, Study as Results};
 use maud::{Markup, html};
 
 use super::curve::{FLOOR, unfit};
@@ -70,7 +70,7 @@ fn diagrams(study: &Study, pair: &Pair) -> Markup {
 
 fn figure(study: &Study, pair: &Pair, measure: Measure) -> Figure {
     let diagrams = side_by_side(study, pair, measure, Paper::Screen);
-    // What one precision has, the other has too, but for wrong points.
+    // What one view has, the other has too, but for wrong points.
     let legend = diagrams
         .iter()
         .map(|diagram| &diagram.legend)
@@ -85,7 +85,7 @@ fn figure(study: &Study, pair: &Pair, measure: Measure) -> Figure {
     let charts = diagrams
         .into_iter()
         .map(|diagram| Chart {
-            heading: Some(diagram.precision.to_owned()),
+            heading: Some(diagram.view.name()),
             svg: diagram.svg,
             half: true,
         })
@@ -108,6 +108,11 @@ fn caption(pair: &Pair, measure: Measure) -> String {
     } else {
         ""
     };
+    let behind = if pair.points().all(Point::is_exact) {
+        ""
+    } else {
+        " Encoder: the rung has counts of the device's encoder, 36 µrad each, and the velocity estimated from them."
+    };
     let gaps = if pair.points().any(|point| unfit(point, measure).is_some()) {
         " A curve is broken, or ends, where a point is left out; these are listed below."
     } else {
@@ -115,7 +120,7 @@ fn caption(pair: &Pair, measure: Measure) -> String {
     };
     format!(
         "{} Down is more accurate, left is cheaper; along a curve the step shrinks from left to \
-         right.{arrow}{gaps}",
+         right. A bar through a sign spans the quartiles of the timings.{behind}{arrow}{gaps}",
         measure.caption()
     )
 }

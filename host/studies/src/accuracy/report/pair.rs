@@ -16,9 +16,31 @@ pub(crate) fn is_device_tick(step_s: f64) -> bool {
 pub(crate) struct Study<'p> {
     /// Pairs, the one to look at first in front.
     pub(crate) pairs: Vec<Pair<'p>>,
-    /// Rungs in order of first appearance, as are the precisions.
+    /// Rungs in order of first appearance, as are the views.
     pub(crate) rungs: Vec<&'static str>,
-    pub(crate) precisions: Vec<&'static str>,
+    pub(crate) views: Vec<View>,
+}
+
+/// A precision, on the true motion or behind the encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct View {
+    pub(crate) precision: &'static str,
+    pub(crate) is_exact: bool,
+}
+
+impl View {
+    pub(crate) fn of(point: &Point) -> Self {
+        Self {
+            precision: point.precision,
+            is_exact: point.is_exact(),
+        }
+    }
+
+    /// `f32`, or `f32, encoder`.
+    pub(crate) fn name(self) -> String {
+        let behind = if self.is_exact { "" } else { ", encoder" };
+        format!("{}{behind}", self.precision)
+    }
 }
 
 /// One scene under one convention.
@@ -34,14 +56,14 @@ impl<'p> Study<'p> {
         let mut study = Self {
             pairs: Vec::new(),
             rungs: Vec::new(),
-            precisions: Vec::new(),
+            views: Vec::new(),
         };
         for point in points {
             if !study.rungs.contains(&point.solver) {
                 study.rungs.push(point.solver);
             }
-            if !study.precisions.contains(&point.precision) {
-                study.precisions.push(point.precision);
+            if !study.views.contains(&View::of(point)) {
+                study.views.push(View::of(point));
             }
             let of = study
                 .pairs
@@ -56,6 +78,8 @@ impl<'p> Study<'p> {
                 }),
             }
         }
+        // The encoder's beside the true one of its precision.
+        study.views.sort_by_key(|view| view.precision);
         // Stable: others keep their order.
         study.pairs.sort_by_key(Pair::rank);
         study
@@ -87,12 +111,18 @@ impl<'p> Pair<'p> {
         self.points.iter().copied()
     }
 
-    /// The points of one rung at one precision, from the longest step to the
+    /// The views in which the pair was studied.
+    pub(crate) fn views<'s>(&'s self, study: &'s Study) -> impl Iterator<Item = View> + 's {
+        let has = |view: &View| self.points().any(|point| View::of(point) == *view);
+        study.views.iter().copied().filter(has)
+    }
+
+    /// The points of one rung in one view, from the longest step to the
     /// shortest.
-    pub(crate) fn of(&self, rung: &str, precision: &str) -> Vec<&'p Point> {
+    pub(crate) fn of(&self, rung: &str, view: View) -> Vec<&'p Point> {
         let mut points: Vec<&Point> = self
             .points()
-            .filter(|point| point.solver == rung && point.precision == precision)
+            .filter(|point| point.solver == rung && View::of(point) == view)
             .collect();
         points.sort_by(|a, b| b.step_s.total_cmp(&a.step_s));
         points

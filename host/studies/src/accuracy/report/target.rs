@@ -8,7 +8,7 @@ use crate::accuracy::target::{LABEL, TICK_CYCLES};
 use super::curve::{FLOOR, unfit};
 use super::diagram::{Diagram, file_name};
 use super::measure::Measure;
-use super::pair::{Pair, Study, is_device_tick};
+use super::pair::{Pair, Study, View, is_device_tick};
 use crepitus_pages::plot::labels::{LINE, spread};
 use crepitus_pages::plot::number::{fixed, rounded, scientific};
 use crepitus_pages::plot::palette::TEXT;
@@ -22,7 +22,10 @@ const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 440.0;
 /// Measure that is drawn: the error that says most of a rung.
 const MEASURE: Measure = Measure::Frequency;
-const PRECISION: &str = "f32";
+const VIEW: View = View {
+    precision: "f32",
+    is_exact: true,
+};
 const COST: &str = "Cycles of a step, modelled, 0 wait states; a tick has 8,400";
 
 /// A rung of the pair.
@@ -80,8 +83,8 @@ pub(crate) fn diagram(study: &Study, pair: &Pair, paper: Paper) -> Option<Diagra
         .map(|spot| Key::new(Sign::Filled(CurveStyle::of(spot.rung)), spot.name))
         .collect();
     Some(Diagram {
-        name: file_name("target", pair, PRECISION),
-        precision: PRECISION,
+        name: file_name("target", pair, VIEW),
+        view: VIEW,
         svg,
         legend,
     })
@@ -91,7 +94,7 @@ fn spots<'p>(study: &Study<'p>, pair: &Pair<'p>) -> Vec<Spot<'p>> {
     let rungs = study.rungs.iter().copied().enumerate();
     rungs
         .filter_map(|(rung, name)| {
-            let mut points = pair.of(name, PRECISION).into_iter();
+            let mut points = pair.of(name, VIEW).into_iter();
             let point = points.find(|point| is_device_tick(point.step_s))?;
             let is_known = point.cycles_per_step > 0.0 && point.worst_cycles > 0.0;
             (is_known && unfit(point, MEASURE).is_none()).then_some(Spot { rung, name, point })

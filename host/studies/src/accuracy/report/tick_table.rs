@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use super::left_out::found;
 use super::measure::Measure;
-use super::pair::{Pair, Study, is_device_tick};
+use super::pair::{Pair, Study, View, is_device_tick};
 use crepitus_pages::plot::CurveStyle;
 use crepitus_pages::plot::number::{fixed, rounded, scientific};
 
@@ -23,15 +23,15 @@ struct Row<'p> {
 fn rows<'p>(study: &Study<'p>, pair: &Pair<'p>) -> Vec<Row<'p>> {
     let mut rows = Vec::new();
     for (rung, name) in study.rungs.iter().enumerate() {
-        for precision in &study.precisions {
-            let points = pair.of(name, precision);
+        for view in pair.views(study) {
+            let points = pair.of(name, view);
             let Some(point) = points.into_iter().find(|p| is_device_tick(p.step_s)) else {
                 continue;
             };
             rows.push(Row {
                 rung,
                 point,
-                ratio: point.ns_per_step / cheapest(pair, precision),
+                ratio: point.ns_per_step / cheapest(pair, view),
             });
         }
     }
@@ -39,9 +39,9 @@ fn rows<'p>(study: &Study<'p>, pair: &Pair<'p>) -> Vec<Row<'p>> {
 }
 
 /// The shortest time of a step at the device's tick, ns.
-fn cheapest(pair: &Pair, precision: &str) -> f64 {
+fn cheapest(pair: &Pair, view: View) -> f64 {
     pair.points()
-        .filter(|p| p.precision == precision && is_device_tick(p.step_s) && p.ns_per_step > 0.0)
+        .filter(|p| View::of(p) == view && is_device_tick(p.step_s) && p.ns_per_step > 0.0)
         .map(|p| p.ns_per_step)
         .fold(f64::INFINITY, f64::min)
 }
@@ -59,6 +59,7 @@ pub(crate) fn table(study: &Study, pair: &Pair) -> Markup {
                             th scope="col" { "rung" }
                             th scope="col" { "precision" }
                             th.number scope="col" { "ns a step" }
+                            th.number scope="col" { "quartiles" }
                             th.number scope="col" { "× cheapest" }
                             th.number scope="col" { "worst event error (s)" }
                             th.number scope="col" { "held torque, RMS error (N·m)" }
@@ -70,8 +71,8 @@ pub(crate) fn table(study: &Study, pair: &Pair) -> Markup {
                     }
                 }))
                 p.caption {
-                    "CPU time per step, beside it over that of the cheapest rung at the "
-                    "same precision. "
+                    "CPU time per step, the median and the quartiles of the repeats, beside them over that of the cheapest rung at the "
+                    "same precision and input. "
                     (floor(&rows))
                     "Digits: correct digits of the cycle frequency, −log₁₀ of its "
                     "relative error."
@@ -102,8 +103,11 @@ fn line(row: &Row) -> Markup {
             th scope="row" {
                 span.rung { (CurveStyle::of(row.rung).inline(false)) (point.solver) }
             }
-            td { (point.precision) }
+            td { (View::of(point).name()) }
             td.number { (nanoseconds(point.ns_per_step)) }
+            td.number {
+                (nanoseconds(point.ns_per_step_q1)) "–" (nanoseconds(point.ns_per_step_q3))
+            }
             td.number { (nanoseconds(row.ratio)) }
             @if point.unmatched > 0 {
                 td.wrong colspan="5" {

@@ -39,6 +39,7 @@ impl Costs {
         found.map_or(
             Cost {
                 ns_per_step: f64::NAN,
+                quartiles_ns: [f64::NAN; 2],
                 spread: f64::NAN,
             },
             |(_, _, cost)| *cost,
@@ -72,7 +73,8 @@ pub(super) fn time(
     let crepitus = crepitus
         .as_ref()
         .zip(crepitus_steps.as_ref())
-        .map(|(scene, sampling)| Track::new(scene, sampling));
+        .map(|(scene, sampling)| Track::new(scene, sampling))
+        .transpose()?;
     let steps = Steps::new(step_s);
     let contestants: Vec<(Option<&Given>, Precision)> = plan
         .precisions

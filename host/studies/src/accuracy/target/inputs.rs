@@ -124,7 +124,7 @@ pub fn tasks(
     };
     let plan = plan(subject, wander);
     match subject {
-        Subject::Rung(..) => {}
+        Subject::Rung(..) | Subject::Law(_) => {}
         Subject::Checked(_) => tasks.push(hard("gaps", plan, device::gaps(wander))),
         Subject::Renderer => {
             tasks.push(hard("gaps", plan, device::gaps(wander)));

@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn every_subject_is_on_record_and_reads_back() {
         let on = on_target();
-        let all = Subject::all();
+        let all = Subject::all().filter(|subject| subject.law().is_none());
         let names: Vec<_> = all
             .map(|subject| {
                 (

@@ -2,8 +2,8 @@
 
 use super::numbers::plain;
 use super::table::{Row, nearest_to_the_tick, rows, scenes, worst_floor};
-use crate::accuracy::Study;
 use crate::accuracy::target::{self, OnTarget, recorded};
+use crate::accuracy::{Input, Study};
 use crepitus_model::Convention;
 use crepitus_model::solver::Solver;
 use crepitus_pages::table::Table;
@@ -33,7 +33,7 @@ pub(super) fn answer(study: &Study) -> String {
         "At {} ({convention}, {}, worst of {})",
         at_step(step_s),
         Precision::F32.name(),
-        scenes(study, convention)
+        scenes(study, convention, Input::Exact.name())
     );
     let costs = if cheapest.solver == exact.solver {
         format!(
@@ -55,7 +55,7 @@ pub(super) fn answer(study: &Study) -> String {
     };
     let held = worst_floor(study, step_s).map(|worst| {
         format!(
-            "A torque that is held for {} is off by {} mN·m RMS, whoever solves: a shorter step mends that, no solver does.",
+            "A torque that is held for {} is off by up to {} mN·m RMS, whoever solves: a shorter step mends that, no solver does.",
             microseconds(step_s),
             milli(worst.held_floor_nm)
         )
@@ -124,10 +124,10 @@ fn cost<'t>(on: &'t OnTarget, row: &Row) -> Option<&'t target::Row> {
     })
 }
 
-/// The rungs in the device's precision.
+/// The rungs in the device's precision, on the true motion.
 fn single(study: &Study, step_s: f64) -> Vec<Row> {
     let mut rows = rows(study, step_s);
-    rows.retain(|row| row.precision == Precision::F32.name());
+    rows.retain(|row| row.precision == Precision::F32.name() && row.input == Input::Exact.name());
     rows
 }
 

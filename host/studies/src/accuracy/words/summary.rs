@@ -2,7 +2,7 @@
 
 use super::AccuracyOutcome;
 use crate::accuracy::Study;
-use crate::machine;
+use crate::machine::{self, Machine};
 use crepitus_scene::cpu_time::CLOCK;
 use serde::Serialize;
 
@@ -17,6 +17,8 @@ pub(super) struct Summary<'a> {
     crepitus_version: &'static str,
     /// Computer on which the times were measured.
     host: String,
+    /// Its processor, and the build.
+    machine: Machine,
     /// Clock of these times.
     clock: &'static str,
     quick: bool,
@@ -32,6 +34,7 @@ impl<'a> Summary<'a> {
             version: SUMMARY_VERSION,
             crepitus_version: env!("CARGO_PKG_VERSION"),
             host: machine::host(),
+            machine: Machine::here(),
             clock: CLOCK,
             quick: of.is_quick,
             precisions: of.precisions.iter().map(|p| p.name()).collect(),

@@ -1,6 +1,6 @@
 //! The study at the device's tick, as a table for the terminal.
 
-use crate::accuracy::{Point, Study};
+use crate::accuracy::{Input, Point, Study};
 use crepitus_pages::table::Table;
 use crepitus_pages::table::show::{fixed, microseconds, scientific};
 use std::fmt::Write;
@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// The device's tick, s.
 const TICK_S: f64 = 5e-5;
 
-/// Table, for each convention, of every rung at the device's tick, or at the studied step
+/// Table, for each convention and input, of every rung at the device's tick, or at the studied step
 /// that is nearest to it: the worst of all scenes.
 pub(super) fn at_the_tick(study: &Study) -> String {
     let Some(step_s) = nearest_to_the_tick(study) else {
@@ -18,13 +18,18 @@ pub(super) fn at_the_tick(study: &Study) -> String {
         "What accuracy costs at a step of {}\n",
         microseconds(step_s)
     );
-    for rows in rows(study, step_s).chunk_by(|a, b| a.convention == b.convention) {
-        let convention = rows.first().map_or("", |row| row.convention);
+    for rows in
+        rows(study, step_s).chunk_by(|a, b| (a.convention, a.input) == (b.convention, b.input))
+    {
+        let (convention, input) = rows
+            .first()
+            .map_or(("", ""), |row| (row.convention, row.input));
+        let behind = behind(input);
         // Writing to a String cannot fail.
         let _ = write!(
             text,
-            "\n{convention}, worst of {}:\n{}",
-            scenes(study, convention),
+            "\n{convention}{behind}, worst of {}:\n{}",
+            scenes(study, convention, input),
             table(rows).to_text()
         );
     }
@@ -55,6 +60,8 @@ fn table(rows: &[Row]) -> Table<'_, Row> {
         .people("precision", |row| row.precision)
         .people("ns/step", |row| row.ns_per_step)
         .rounded(fixed::<1>)
+        .people("spread, %", |row| 100.0 * row.time_spread)
+        .rounded(fixed::<0>)
         .people("event error, s", |row| row.event_s)
         .rounded(scientific)
         .group("rms torque, N·m")
@@ -88,11 +95,20 @@ fn floor(study: &Study, step_s: f64) -> String {
     })
 }
 
-pub(super) fn scenes(study: &Study, convention: &str) -> String {
+/// Note on a scene that was seen by the encoder.
+pub(super) fn behind(input: &str) -> &'static str {
+    if input == Input::Encoder.name() {
+        " behind the encoder"
+    } else {
+        ""
+    }
+}
+
+pub(super) fn scenes(study: &Study, convention: &str, input: &str) -> String {
     let count = study
         .scenes
         .iter()
-        .filter(|s| s.convention == convention)
+        .filter(|s| (s.convention, s.input) == (convention, input))
         .count();
     if count == 1 {
         "one scene".to_owned()
@@ -104,10 +120,13 @@ pub(super) fn scenes(study: &Study, convention: &str) -> String {
 /// A rung, the worst of the scenes of a convention.
 pub(super) struct Row {
     pub(super) convention: &'static str,
+    pub(super) input: &'static str,
     pub(super) solver: &'static str,
     pub(super) precision: &'static str,
     /// Mean over the scenes, ns.
     pub(super) ns_per_step: f64,
+    /// Largest distance of the quartiles over the median.
+    time_spread: f64,
     pub(super) event_s: f64,
     pub(super) frequency_rel: f64,
     held_nm: f64,
@@ -115,7 +134,7 @@ pub(super) struct Row {
     pub(super) unmatched: u64,
 }
 
-/// The rungs at this step, by convention in the order of the scenes.
+/// The rungs at this step, by convention in the order of the scenes; behind the encoder last.
 pub(super) fn rows(study: &Study, step_s: f64) -> Vec<Row> {
     let mut rows: Vec<(Row, f64)> = Vec::new();
     for p in study.points.iter().filter(|p| p.step_s == step_s) {
@@ -123,6 +142,7 @@ pub(super) fn rows(study: &Study, step_s: f64) -> Vec<Row> {
             Some((row, count)) => {
                 *count += 1.0;
                 row.ns_per_step += (p.ns_per_step - row.ns_per_step) / *count;
+                row.time_spread = worse(row.time_spread, p.time_spread);
                 row.event_s = worse(row.event_s, p.max_event_error_s);
                 row.frequency_rel = worse(row.frequency_rel, p.frequency_error_rel);
                 row.held_nm = worse(row.held_nm, p.rms_held_torque_error_nm);
@@ -133,7 +153,7 @@ pub(super) fn rows(study: &Study, step_s: f64) -> Vec<Row> {
         }
     }
     let order = |convention: &str| study.scenes.iter().position(|s| s.convention == convention);
-    rows.sort_by_key(|(row, _)| order(row.convention));
+    rows.sort_by_key(|(row, _)| (order(row.convention), row.input != Input::Exact.name()));
     rows.into_iter().map(|(row, _)| row).collect()
 }
 
@@ -146,9 +166,11 @@ impl Row {
     fn of(p: &Point) -> Self {
         Self {
             convention: p.convention,
+            input: p.input,
             solver: p.solver,
             precision: p.precision,
             ns_per_step: p.ns_per_step,
+            time_spread: p.time_spread,
             event_s: p.max_event_error_s,
             frequency_rel: p.frequency_error_rel,
             held_nm: p.rms_held_torque_error_nm,
@@ -158,6 +180,8 @@ impl Row {
     }
 
     fn is_of(&self, p: &Point) -> bool {
-        self.convention == p.convention && self.solver == p.solver && self.precision == p.precision
+        (self.convention, self.input) == (p.convention, p.input)
+            && self.solver == p.solver
+            && self.precision == p.precision
     }
 }

@@ -4,7 +4,7 @@
 use super::table::torque;
 use crate::effects::EffectsStudy;
 use crate::effects::variant::Change;
-use crate::machine;
+use crate::machine::{self, Machine};
 use crepitus_plant::effects::EFFECTS;
 use crepitus_scene::cpu_time::CLOCK;
 use serde::Serialize;
@@ -20,6 +20,8 @@ pub(super) struct Summary<'a> {
     crepitus_version: &'static str,
     /// Computer on which the times were measured.
     host: String,
+    /// Its processor, and the build.
+    machine: Machine,
     /// Clock of these times.
     clock: &'static str,
     conclusion: String,
@@ -33,6 +35,7 @@ impl<'a> Summary<'a> {
             version: SUMMARY_VERSION,
             crepitus_version: env!("CARGO_PKG_VERSION"),
             host: machine::host(),
+            machine: Machine::here(),
             clock: CLOCK,
             conclusion: conclusion(study),
             study,

@@ -15,7 +15,7 @@ const NM_PER_A: f32 = 3.33;
 /// Inputs of a subject while the shaft moves.
 pub(super) fn usual(plan: &Plan, motion: &[ShaftStep<f32>]) -> Result<Vec<Input>, SettingsError> {
     Ok(match plan.subject {
-        Subject::Rung(..) | Subject::Checked(_) | Subject::Renderer => {
+        Subject::Rung(..) | Subject::Checked(_) | Subject::Renderer | Subject::Law(_) => {
             motion.iter().map(taken).collect()
         }
         Subject::Encoder => counts(motion),
