@@ -60,6 +60,7 @@ pub(super) const USES: &[(&str, Use)] = &[
     ),
     ("info --scene", Every("info --device sim --scene {}")),
     ("knee --out", Written),
+    ("laws --out", Written),
     (
         "monitor --scene",
         Ends("monitor --device sim --scene {} --for 1s"),

@@ -43,6 +43,7 @@ const SHARD: &[&str] = &[
     "--shard",
     "1/2",
 ];
+const LAWS: &[&str] = &["--quick", "--law", "frozen", "--task", "creep"];
 const WEIGHT: &[&str] = &["none", "--weight-kg", "2.4", "--lever-m", "0.25"];
 const REPORT: &[&str] = &["RECORDING"];
 const EXPORT: &[&str] = &["RECORDING", "--format", "csv"];
@@ -144,6 +145,16 @@ pub(super) const CASES: &[Case] = &[
             "onsets.csv",
             "margins.csv",
             "scene.toml",
+            "report.html",
+            "summary.json",
+        ],
+    ),
+    folder(
+        "laws",
+        LAWS,
+        &[
+            "leaderboard.csv",
+            "costs.csv",
             "report.html",
             "summary.json",
         ],

@@ -16,6 +16,7 @@ const REPORTS = {
   effects: ["effects", "fig8", "--set", "duration_s=0.6"],
   stability: ["stability", "--case", "H01", "--case", "H05", "--pictures"],
   accuracy: ["accuracy", "--quick", "--scene", "fig6-ideal-cycle", "--steps", "1e-4,5e-5"],
+  laws: ["laws", "--quick", "--law", "frozen", "--law", "karnopp", "--task", "grating", "--task", "creep"],
   vibration: ["vibration", "--speeds", "1"],
 };
 let home;

@@ -17,6 +17,7 @@ pub(crate) mod identify;
 pub(crate) mod identify_actuator;
 pub(crate) mod info;
 pub(crate) mod knee;
+pub(crate) mod laws;
 pub(crate) mod monitor;
 pub(crate) mod panel;
 pub(crate) mod params;
@@ -82,6 +83,7 @@ verbs! {
     Sweep: sweep,
     Accuracy: accuracy,
     Stability: stability,
+    Laws: laws,
     Effects: effects,
     Vibration: vibration,
     Scenes: scenes,

@@ -2,7 +2,7 @@
 //! that is accurate enough, on the host or on the target.
 
 mod plan;
-mod target;
+pub(super) mod target;
 
 use crate::cli::Force;
 use crate::failure::{Failure, print, print_json};
@@ -33,12 +33,13 @@ Examples:
       --precision f64
 
 The answer comes first, --all prints every table. Every solver, in f32 and f64 and at steps from 1 ms to 2 µs, is compared with the reference \
-on four constant speeds and a hand-like sine, and timed on this machine in CPU time; so is every other symptom, \
+on four constant speeds, a hand-like sine, strokes and knee bends, the last two on the joint of every crepitus preset, and \
+timed on this machine in CPU time (median and quartiles); in f32 also behind the device's encoder. So is every other symptom, \
 on strokes, a steady movement and a tremor, timed beside a step of crepitus. With --target it is also \
 run on an emulated STM32F405: modelled cycles, 0 wait states; not measured on hardware. The worst \
 cycles are the worst observed, over inputs with breaks, matches and reversals.
 
-A NEED is a list of limits that must hold on every scene: torque (rms error of the torque as the \
+A NEED is a list of limits that must hold on every speed and the sine of the paper's joint, or on --scene: torque (rms error of the torque as the \
 device holds it for a step, over continuous time, N·m), peak-torque (the largest such error, N·m), \
 torque-at-tick and peak-torque-at-tick (the same at the ends of steps alone, N·m), event (worst event-time error, s), interval (worst \
 interval error, s), frequency (relative error of the cycle frequency). The answer is the \

@@ -64,7 +64,12 @@ pub(super) fn plan(arguments: &Arguments) -> Result<Studied, Failure> {
 
 fn scenes(arguments: &Arguments) -> Result<Vec<StudyScene>, Failure> {
     let Some(path) = &arguments.scene else {
-        return scenes::standard()
+        // A need is for the paper's joint on its true motion; of another one it is asked with --scene.
+        let scenes = match arguments.need {
+            Some(_) => scenes::standard(),
+            None => scenes::full(),
+        };
+        return scenes
             .map_err(|e| Failure::Work(format!("the standard scenes are not valid: {e}")));
     };
     let scene = shipped::scene(path, &Overrides::default())?;

@@ -6,10 +6,10 @@ use crate::studying::Watch;
 use crepitus_emulator::on_target::{self, OnTarget};
 use crepitus_studies::accuracy::target::inputs::Lengths;
 use crepitus_studies::accuracy::target::{self, TargetError};
-use crepitus_studies::accuracy::{Study, StudyScene};
+use crepitus_studies::accuracy::{Study, StudyScene, scenes};
 
 /// The program on an emulated core.
-pub(super) fn ladder() -> Result<OnTarget, Failure> {
+pub(in crate::verbs) fn ladder() -> Result<OnTarget, Failure> {
     on_target::ladder(|| to_stderr("building firmware/ladder, if it is not up to date"))
         .map_err(|error| Failure::Work(format!("--target: {error}")))
 }
@@ -26,6 +26,9 @@ pub(super) fn add(
     } else {
         Lengths::FULL
     };
+    // The standard ones, with which the full set begins: each run there takes seconds.
+    let standard = scenes::standard().map_or(0, |standard| standard.len());
+    let scenes = scenes.get(..standard).unwrap_or(scenes);
     let costs = target::costs(
         &mut study.points,
         scenes,
