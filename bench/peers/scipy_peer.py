@@ -1,20 +1,28 @@
 #!/usr/bin/env python3
 """SciPy's solve_ivp on the same work; optional: `pip install scipy`, then run it.
 
-Prints a table like that of `cargo run --release`. Each mode is one call with a terminal,
-directional event and begins at time zero; samples come from the dense output. The right-hand side
-is Python: read the times as what a user of SciPy waits, not as what its algorithms cost.
+Takes the name of a preset, `coarse` if none is given. Prints a table like that of
+`cargo run --release`. Each mode is one call with a terminal, directional event and begins at time
+zero; samples come from the dense output. The right-hand side is Python: read the times as what a
+user of SciPy waits, not as what its algorithms cost.
 """
 
 import math
 import sys
 import time
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import scipy
 from scipy.integrate import solve_ivp
 
-J, KR, TK, TS, OMEGA = 0.01, 400.0, 0.2, 0.4, 1.0
+JOINT = sys.argv[1] if len(sys.argv) > 1 else "coarse"
+PRESET = Path(__file__).parents[2] / "presets" / f"{JOINT}.toml"
+CREPITUS = tomllib.loads(PRESET.read_text(encoding="utf-8"))["effects"]["crepitus"]
+KEYS = ("inertia_kg_m2", "stiffness_nm_per_rad", "kinetic_torque_nm", "static_torque_nm")
+J, KR, TK, TS = (CREPITUS[key] for key in KEYS)
+OMEGA = 1.0
 DURATION, RATE, SAMPLES = 10.0, 20_000, 200_000
 WN = math.sqrt(KR / J)
 LAMBDA = (TS - TK) / (OMEGA * math.sqrt(J * KR))
@@ -27,7 +35,7 @@ SAMPLE_TIMES = np.arange(1, SAMPLES + 1) / RATE
 
 
 def closed_form_events():
-    breaks = FIRST + np.arange(1000) * (STICK + SLIP)
+    breaks = FIRST + np.arange(int(DURATION / (STICK + SLIP)) + 1) * (STICK + SLIP)
     events = np.sort(np.concatenate([breaks, breaks + SLIP]))
     return events[events <= DURATION]
 
@@ -88,7 +96,7 @@ def timed(*args):
 def main():
     truth, torque_truth = closed_form_events(), closed_form_torque()
     print(
-        f"SciPy {scipy.__version__}, CPU time of a single run each\n\n"
+        f"SciPy {scipy.__version__}, {JOINT}, CPU time of a single run each\n\n"
         f"| solver | setting | events of {len(truth)} | worst event error, s | events only, ms "
         "| all samples, ms | worst torque error, N·m |\n|---|---|---|---|---|---|---|"
     )

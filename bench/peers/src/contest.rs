@@ -3,8 +3,9 @@
 use crate::measure::{Score, Summary, repeats, score, summarise, time};
 use crate::ours;
 use crate::peers::{Peer, Setting};
-use crate::work::{Delivery, Runner, Task};
+use crate::work::{Delivery, Runner, Task, Work};
 use crepitus_model::Convention;
+use crepitus_scene::preset::Joint;
 use serde::Serialize;
 
 /// An event is good if it is within this of the closed form, s.
@@ -56,12 +57,13 @@ impl Contestant {
 }
 
 /// Ours, then every peer at three tolerances and at the best that the search found for each task.
-pub fn line_up(out: &mut Delivery) -> Vec<Contestant> {
+pub fn line_up(joint: &Joint, out: &mut Delivery) -> Vec<Contestant> {
+    let work = Work::new(joint.parameters);
     let mut all = Vec::new();
     for convention in [Convention::Frozen, Convention::Physical] {
         for (method, runner) in [
-            ("exact-events", ours::exact_events(convention)),
-            ("reference", ours::reference(convention)),
+            ("exact-events", ours::exact_events(convention, joint)),
+            ("reference", ours::reference(convention, joint)),
         ] {
             all.push(Contestant {
                 who: Who {
@@ -76,7 +78,7 @@ pub fn line_up(out: &mut Delivery) -> Vec<Contestant> {
         }
     }
     for peer in Peer::ALL {
-        eprintln!("tuning {} {}", peer.library, peer.method);
+        eprintln!("{}: tuning {} {}", joint.name, peer.library, peer.method);
         let mut settings: Vec<(Setting, Vec<Task>)> = Vec::new();
         for tolerance in [1e-6, 1e-9, 1e-12] {
             let free = Setting {
@@ -85,7 +87,7 @@ pub fn line_up(out: &mut Delivery) -> Vec<Contestant> {
             };
             settings.push((free, Vec::new()));
             // A peer that misses events is also shown with what it takes to find them.
-            if attempt(&peer, free, out).is_none_or(|s| s.event_error_s.is_none()) {
+            if attempt(&work, &peer, free, out).is_none_or(|s| s.event_error_s.is_none()) {
                 let limited = Setting {
                     limited: true,
                     ..free
@@ -93,14 +95,14 @@ pub fn line_up(out: &mut Delivery) -> Vec<Contestant> {
                 settings.push((limited, Vec::new()));
             }
         }
-        for (task, best) in tune(&peer, out) {
+        for (task, best) in tune(&work, &peer, out) {
             match settings.iter_mut().find(|(s, _)| *s == best) {
                 Some((_, tasks)) => tasks.push(task),
                 None => settings.push((best, vec![task])),
             }
         }
         for (setting, tuned_for) in settings {
-            if let Ok(runner) = peer.build(setting) {
+            if let Ok(runner) = peer.build(work, setting) {
                 all.push(Contestant {
                     who: Who {
                         library: peer.library.into(),
@@ -117,14 +119,20 @@ pub fn line_up(out: &mut Delivery) -> Vec<Contestant> {
     all
 }
 
-fn attempt(peer: &Peer, setting: Setting, out: &mut Delivery) -> Option<Score> {
-    score(&mut peer.build(setting).ok()?, Task::Events, out).ok()
+fn attempt(work: &Work, peer: &Peer, setting: Setting, out: &mut Delivery) -> Option<Score> {
+    score(
+        work,
+        &mut peer.build(*work, setting).ok()?,
+        Task::Events,
+        out,
+    )
+    .ok()
 }
 
 /// Finds for each task the cheapest setting with every event within [`EVENT_LIMIT_S`]: tolerances from
 /// 1e-4 to 1e-13 in half decades, slips limited or not. A setting that finds all events by luck
 /// of its steps is as good as any.
-fn tune(peer: &Peer, out: &mut Delivery) -> Vec<(Task, Setting)> {
+fn tune(work: &Work, peer: &Peer, out: &mut Delivery) -> Vec<(Task, Setting)> {
     /// Number of the cheapest settings that are timed again for each task.
     const SHORT_LIST: usize = 5;
     let mut good = Vec::new();
@@ -134,8 +142,8 @@ fn tune(peer: &Peer, out: &mut Delivery) -> Vec<(Task, Setting)> {
                 tolerance: 10f64.powf(-f64::from(half_decade) / 2.0),
                 limited,
             };
-            if attempt(peer, setting, out).is_some_and(|s| s.reaches(EVENT_LIMIT_S))
-                && let Ok(mut runner) = peer.build(setting)
+            if attempt(work, peer, setting, out).is_some_and(|s| s.reaches(EVENT_LIMIT_S))
+                && let Ok(mut runner) = peer.build(*work, setting)
             {
                 let events = cost(setting, &mut runner, Task::Events, out);
                 good.push((events, setting, runner));
@@ -170,7 +178,8 @@ fn cheapest(runner: &mut Runner, task: Task, out: &mut Delivery) -> f64 {
 }
 
 /// Scores everyone once, then lets everyone take a turn in each round, there and back.
-pub fn hold(contestants: &mut [Contestant], rounds: usize, out: &mut Delivery) {
+pub fn hold(joint: &Joint, contestants: &mut [Contestant], rounds: usize, out: &mut Delivery) {
+    let work = Work::new(joint.parameters);
     struct Entry {
         who: usize,
         task: usize,
@@ -182,7 +191,7 @@ pub fn hold(contestants: &mut [Contestant], rounds: usize, out: &mut Delivery) {
     for (who, contestant) in contestants.iter_mut().enumerate() {
         for (task, &asked) in Task::ALL.iter().enumerate() {
             let runner = &mut contestant.runner;
-            match score(runner, asked, out) {
+            match score(&work, runner, asked, out) {
                 Ok(score) => entries.push(Entry {
                     who,
                     task,
@@ -198,7 +207,7 @@ pub fn hold(contestants: &mut [Contestant], rounds: usize, out: &mut Delivery) {
         }
     }
     for round in 0..rounds {
-        eprintln!("round {} of {rounds}", round + 1);
+        eprintln!("{}: round {} of {rounds}", joint.name, round + 1);
         let mut turn = |entry: &mut Entry| {
             let runner = &mut contestants[entry.who].runner;
             let task = Task::ALL[entry.task];

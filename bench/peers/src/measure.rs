@@ -38,8 +38,12 @@ impl Score {
 ///
 /// # Errors
 /// The solver's message if it gives up.
-pub fn score(runner: &mut Runner, task: Task, out: &mut Delivery) -> Result<Score, String> {
-    let work = Work::new();
+pub fn score(
+    work: &Work,
+    runner: &mut Runner,
+    task: Task,
+    out: &mut Delivery,
+) -> Result<Score, String> {
     out.wipe();
     runner(task, out)?;
     let truth = work.closed_form_events();

@@ -4,8 +4,10 @@
 //! Under a hand each event has to be searched for.
 
 use crepitus_plant::Motion;
+use crepitus_plant::motion::Strokes;
 use crepitus_plant::piece::Piece;
 use crepitus_plant::recording::{self, AngleUnit, Angles, Quantity, Samples, Source};
+use crepitus_scene::preset::Joint;
 use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -14,9 +16,11 @@ use std::rc::Rc;
 /// Low-pass of a recorded knee, Hz: what a scene uses if it does not say.
 const CUTOFF_HZ: f64 = 6.0;
 
-/// A hand that moves the shaft.
+/// A hand that moves the shaft of a joint.
 #[derive(Clone)]
 pub struct Hand {
+    /// The joint.
+    pub joint: Joint,
     /// Name on the command line.
     pub name: &'static str,
     /// Description and source of the motion.
@@ -31,14 +35,24 @@ pub struct Hand {
     pub event_limits_s: &'static [f64],
 }
 
+impl Hand {
+    /// Joint and motion.
+    pub fn name(&self) -> String {
+        format!("{}, {}", self.joint.name, self.name)
+    }
+}
+
 /// Name of the knee pass.
 pub const HAND_SINE: &str = "hand-sine";
 /// Name of the recorded knee.
 pub const RECORDED_KNEE: &str = "recorded-knee";
+/// Name of the passive examination.
+pub const STROKES: &str = "strokes";
 
 /// The knee pass of `scenes/knee-pass-*.toml`: 45° at 0.25 Hz, from full extension.
-pub fn hand_sine() -> Hand {
+pub fn hand_sine(joint: Joint) -> Hand {
     Hand {
+        joint,
         name: HAND_SINE,
         source: "45° at 0.25 Hz for 10 s".into(),
         motion: Rc::new(Motion::sine(45f64.to_radians(), 0.25, -90.0)),
@@ -48,11 +62,30 @@ pub fn hand_sine() -> Hand {
     }
 }
 
+/// Minimum-jerk strokes of 60° there and back with a peak of 60°/s, as in the accuracy study.
+pub fn strokes(joint: Joint) -> Hand {
+    let full_rad = 60_f64.to_radians();
+    Hand {
+        joint,
+        name: STROKES,
+        source: "minimum-jerk, 60° with a peak of 60°/s, pauses of 0.1 s, for 10 s".into(),
+        motion: Rc::new(Motion::Strokes(Strokes {
+            from_rad: 0.0,
+            to_rad: full_rad,
+            peak_speed_rad_s: full_rad,
+            pause_s: 0.1,
+        })),
+        duration_s: 10.0,
+        turn_s: 0.1,
+        event_limits_s: &[1e-9],
+    }
+}
+
 /// A walk: the recording beside the repository, or a synthetic one where that is missing.
 ///
 /// # Errors
 /// Error message of a recording that cannot be read.
-pub fn recorded_knee() -> Result<Hand, String> {
+pub fn recorded_knee(joint: Joint) -> Result<Hand, String> {
     const FILE: &str = "opensim_walk_100hz.csv";
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let path = path.join(FILE);
@@ -70,6 +103,7 @@ pub fn recorded_knee() -> Result<Hand, String> {
     let segments = recording::smooth(&samples, CUTOFF_HZ).map_err(|e| e.to_string())?;
     let duration_s = samples.duration_s();
     Ok(Hand {
+        joint,
         name: RECORDED_KNEE,
         source: format!("{source}{duration_s:.2} s below {CUTOFF_HZ} Hz"),
         motion: Rc::new(Motion::recording(&segments)),
@@ -110,20 +144,13 @@ pub struct Cursor {
 }
 
 impl Cursor {
-    /// Begins with the first piece.
-    ///
-    /// # Errors
-    /// A motion without a list of pieces.
-    pub fn new(motion: &Motion) -> Result<Self, String> {
-        let pieces: Rc<[Piece]> = match motion {
-            Motion::Single(piece) => [*piece].into(),
-            Motion::Sequence(pieces) if !pieces.is_empty() => pieces.as_slice().into(),
-            _ => return Err("a motion without a list of pieces".into()),
-        };
-        Ok(Self {
-            pieces,
+    /// Begins with the first of the pieces up to the end of a run.
+    pub fn new(motion: &Motion, duration_s: f64) -> Self {
+        let after = |last: &Piece| (last.end_s <= duration_s).then(|| motion.piece(last.end_s));
+        Self {
+            pieces: std::iter::successors(Some(motion.piece(0.0)), after).collect(),
             at: Cell::new(0),
-        })
+        }
     }
 
     /// The piece at a time, s: near the last one, so it is found in a step or two.
@@ -144,19 +171,19 @@ impl Cursor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crepitus_scene::preset::joints;
 
     #[test]
     fn a_cursor_gives_what_the_motion_gives_forth_and_back() {
         let segments = recording::smooth(&synthetic_walk(), CUTOFF_HZ).unwrap();
-        let motion = Motion::recording(&segments);
-        let cursor = Cursor::new(&motion).unwrap();
-        for n in (0..=2400).chain((0..2400).rev().step_by(7)) {
-            let time_s = f64::from(n) * 1e-3;
-            assert_eq!(
-                cursor.piece(time_s).at(time_s),
-                motion.at(time_s),
-                "{time_s}"
-            );
+        let strokes = strokes(joints()[0]);
+        for motion in [&Motion::recording(&segments), &*strokes.motion] {
+            let cursor = Cursor::new(motion, 2.4);
+            for n in (0..=2400).chain((0..2400).rev().step_by(7)) {
+                let time_s = f64::from(n) * 1e-3;
+                let found = cursor.piece(time_s).at(time_s);
+                assert_eq!(found, motion.at(time_s), "{time_s}");
+            }
         }
     }
 

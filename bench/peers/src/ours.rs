@@ -1,16 +1,19 @@
 //! Our solvers: `exact-events` in steps, and `reference` from event to event.
 
 use crate::motion::Hand;
-use crate::work::{DURATION_S, Delivery, Mode, OMEGA, RATE_HZ, Runner, SAMPLES, Sampler, Task};
+use crate::work::{
+    DURATION_S, Delivery, Mode, OMEGA, RATE_HZ, Runner, SAMPLES, Sampler, Task, Work,
+};
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{Convention, Event, Settings, ShaftStep, StickSlip, Validated};
 use crepitus_plant::Motion;
+use crepitus_scene::preset::Joint;
 use crepitus_scene::reference::Reference;
 use std::hint::black_box;
 
 /// `exact-events` in f64, a step for each sample, which is all that it can be asked for.
-pub fn exact_events(convention: Convention) -> Runner {
-    let settings = settings(convention);
+pub fn exact_events(convention: Convention, joint: &Joint) -> Runner {
+    let settings = settings(convention, joint);
     Box::new(move |task, out| {
         if task != Task::Samples {
             return Err("steps through all samples".into());
@@ -29,9 +32,10 @@ pub fn exact_events(convention: Convention) -> Runner {
 
 /// `reference`, which has no step: it goes from event to event, and to the samples in sticks where
 /// those are asked for.
-pub fn reference(convention: Convention) -> Runner {
-    let settings = settings(convention);
+pub fn reference(convention: Convention, joint: &Joint) -> Runner {
+    let settings = settings(convention, joint);
     let motion = Motion::constant(OMEGA);
+    let work = Work::new(joint.parameters);
     Box::new(move |task, out| {
         if task == Task::Samples {
             return Err("has no steps".into());
@@ -45,7 +49,7 @@ pub fn reference(convention: Convention) -> Runner {
         }
         // Once more, now that it is known how far each mode goes.
         let mut reference = Reference::new(settings, motion);
-        let mut sampler = Sampler::new(task, torque);
+        let mut sampler = Sampler::new(&work, task, torque);
         let mut mode = Mode::Stick;
         for &until_s in events.iter().chain([&DURATION_S]) {
             sampler.deliver(mode, until_s, |time_s| {
@@ -66,7 +70,7 @@ pub fn reference_events(convention: Convention, hand: &Hand) -> Runner {
 /// `reference` on a moving hand, with the torque at each of `rows` rows, `spacing_s` apart.
 #[expect(clippy::cast_precision_loss, reason = "at most 100,000 rows")]
 pub fn reference_rows(convention: Convention, hand: &Hand, spacing_s: f64, rows: usize) -> Runner {
-    let settings = settings(convention);
+    let settings = settings(convention, &hand.joint);
     let (motion, duration_s) = (hand.motion.clone(), hand.duration_s);
     Box::new(move |_, out| {
         let Delivery { events, torque } = out;
@@ -82,14 +86,15 @@ pub fn reference_rows(convention: Convention, hand: &Hand, spacing_s: f64, rows:
     })
 }
 
-/// The paper's parameters, which are the default.
-fn settings(convention: Convention) -> Validated<Settings> {
+/// A joint's parameters.
+fn settings(convention: Convention, joint: &Joint) -> Validated<Settings> {
     Settings {
+        parameters: joint.parameters,
         convention,
         ..Settings::default()
     }
     .validate()
-    .expect("the paper's parameters are valid")
+    .expect("the parameters of a preset are valid")
 }
 
 struct Steps<'a>(&'a mut Delivery);

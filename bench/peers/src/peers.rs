@@ -18,7 +18,7 @@ pub struct Peer {
     pub library: &'static str,
     /// Method of the library.
     pub method: &'static str,
-    build: fn(Setting) -> Result<Runner, String>,
+    build: fn(Work, Setting) -> Result<Runner, String>,
 }
 
 /// Settings of a method.
@@ -36,12 +36,12 @@ impl Peer {
         Self {
             library: "differential-equations 0.7.0",
             method: "dopri5",
-            build: |setting| Ok(differential_equations::dopri5(setting)),
+            build: |work, setting| Ok(differential_equations::dopri5(work, setting)),
         },
         Self {
             library: "differential-equations 0.7.0",
             method: "dop853",
-            build: |setting| Ok(differential_equations::dop853(setting)),
+            build: |work, setting| Ok(differential_equations::dop853(work, setting)),
         },
         Self {
             library: "diffsol 0.18.0",
@@ -56,18 +56,18 @@ impl Peer {
         Self {
             library: "ivp 0.6.0",
             method: "dopri5",
-            build: |setting| Ok(ivp::dopri5(setting)),
+            build: |work, setting| Ok(ivp::dopri5(work, setting)),
         },
         Self {
             library: "ivp 0.6.0",
             method: "dop853",
-            build: |setting| Ok(ivp::dop853(setting)),
+            build: |work, setting| Ok(ivp::dop853(work, setting)),
         },
     ];
 
     /// Sets the method up.
-    pub fn build(&self, setting: Setting) -> Result<Runner, String> {
-        (self.build)(setting)
+    pub fn build(&self, work: Work, setting: Setting) -> Result<Runner, String> {
+        (self.build)(work, setting)
     }
 }
 

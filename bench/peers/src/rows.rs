@@ -66,7 +66,7 @@ impl Rows {
                 .map(|s| ours::reference_rows(convention, hand, s.spacing_s, s.rows)),
         );
         Self {
-            name: format!("{}, {}", hand.name, convention.name()),
+            name: format!("{}, {}", hand.name(), convention.name()),
             events_s: f64::NAN,
             spacings: spacings.into(),
             runners,

@@ -1,16 +1,26 @@
 //! The result as Markdown.
 
 use crate::contest::{Contestant, Who};
+use crate::summary::Line;
 use crate::verdict::Ratio;
-use crate::work::Task;
+use crate::work::{Task, Work};
+use crepitus_scene::preset::Joint;
 use std::fmt::Write as _;
 
 /// The table and the ratios below it.
-pub fn markdown(contestants: &[Contestant], ratios: &[Ratio], rounds: usize) -> String {
-    let mut text = String::from(
-        "| solver | setting | events of 637 | worst event error, s | events only, ms \
+pub fn markdown(
+    joint: &Joint,
+    contestants: &[Contestant],
+    ratios: &[Ratio],
+    rounds: usize,
+) -> String {
+    let events = Work::new(joint.parameters).closed_form_events().len();
+    let mut text = format!(
+        "\n**{}** at a constant speed\n\n\
+         | solver | setting | events of {events} | worst event error, s | events only, ms \
          | all samples, ms | samples in sticks only, ms | worst torque error, N·m |\n\
          |---|---|---|---|---|---|---|---|\n",
+        joint.name,
     );
     for c in contestants {
         let score = c.results.iter().flatten().next().map(|r| r.score);
@@ -72,6 +82,24 @@ pub fn markdown(contestants: &[Contestant], ratios: &[Ratio], rounds: usize) -> 
         );
     }
     text
+}
+
+/// A ratio for the summary.
+pub fn line(joint: &Joint, ratio: &Ratio) -> Line {
+    let [ours_time, peer_time] = ratio.times;
+    let work = match ratio.task {
+        Task::Samples => "constant, all samples",
+        Task::SamplesInStick => "constant, samples in sticks",
+        Task::Events => "constant, events",
+    };
+    Line {
+        joint: joint.name,
+        work: work.into(),
+        ours: ratio.ours.method.clone(),
+        ours_time,
+        peer: Some((name(&ratio.peer), peer_time)),
+        required: ratio.required,
+    }
 }
 
 fn name(who: &Who) -> String {

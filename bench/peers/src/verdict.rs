@@ -1,7 +1,9 @@
 //! Result of the comparison: the ratios, and whether they are what is asked for.
 
 use crate::contest::{Contestant, EVENT_LIMIT_S, Who};
+use crate::measure::Summary;
 use crate::work::Task;
+use crepitus_scene::preset::Joint;
 use serde::Serialize;
 
 /// Required speed-up with all samples.
@@ -22,6 +24,8 @@ pub struct Ratio {
     pub ours: Who,
     /// The fastest peer with every event within 1e-9 s.
     pub peer: Who,
+    /// Our time and the peer's.
+    pub times: [Summary; 2],
     /// CPU time of the peer over ours.
     pub cpu: f64,
     /// Wall time of the peer over ours.
@@ -60,6 +64,7 @@ pub fn ratios(contestants: &[Contestant]) -> Vec<Ratio> {
                 task,
                 ours: ours.who.clone(),
                 peer: peer.who.clone(),
+                times: [result.time, peer_result.time],
                 cpu: peer_time.cpu_s / time.cpu_s,
                 wall: peer_time.wall_s / time.wall_s,
                 required: match task {
@@ -75,13 +80,14 @@ pub fn ratios(contestants: &[Contestant]) -> Vec<Ratio> {
 }
 
 /// Requirements that do not hold, in words; empty if all do.
-pub fn failures(contestants: &[Contestant], ratios: &[Ratio]) -> Vec<String> {
+pub fn failures(joint: &Joint, contestants: &[Contestant], ratios: &[Ratio]) -> Vec<String> {
     let mut failures = Vec::new();
+    let name = joint.name;
     for ours in contestants.iter().filter(|c| c.who.is_ours()) {
         for result in ours.results.iter().flatten() {
             if !result.score.reaches(EVENT_LIMIT_S) {
                 failures.push(format!(
-                    "{}: {} of {} events, worst error {:?} s",
+                    "{name}, {}: {} of {} events, worst error {:?} s",
                     ours.who.method,
                     result.score.events,
                     result.score.events_true,
@@ -92,12 +98,12 @@ pub fn failures(contestants: &[Contestant], ratios: &[Ratio]) -> Vec<String> {
     }
     for required in [Task::Samples, Task::Events] {
         if !ratios.iter().any(|r| r.task == required) {
-            failures.push(format!("no peer is good enough at {required:?}"));
+            failures.push(format!("{name}: no peer is good enough at {required:?}"));
         }
     }
     for r in ratios.iter().filter(|r| !r.holds()) {
         failures.push(format!(
-            "{}: {:.1} times faster at {:?}, not {}",
+            "{name}, {}: {:.1} times faster at {:?}, not {}",
             r.ours.method,
             r.cpu,
             r.task,

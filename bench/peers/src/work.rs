@@ -1,6 +1,6 @@
 //! The work that every contestant does, and what it should come to.
 //!
-//! Ten seconds of the paper's stick-slip object on a shaft that turns at 1 rad/s. At a constant
+//! Ten seconds of a preset's stick-slip object on a shaft that turns at 1 rad/s. At a constant
 //! speed every event has a closed form, so errors are measured against no other solver.
 //!
 //! The peers see it as an ODE with two modes. Its state is (u, v) with u = ωn·θ and v = θ̇, both
@@ -11,17 +11,10 @@
 //! slip:  u̇ = ωn·v   v̇ = ωn·(uk − u)     ends when Ω − v falls through zero
 //! ```
 
+use crepitus_model::Parameters;
 use std::f64::consts::PI;
 use std::hint::black_box;
 
-/// J, kg·m².
-pub const INERTIA: f64 = 0.01;
-/// kr, N·m/rad.
-pub const STIFFNESS: f64 = 400.0;
-/// Tk, N·m.
-pub const KINETIC: f64 = 0.2;
-/// Ts, N·m.
-pub const STATIC: f64 = 0.4;
 /// Ω, rad/s.
 pub const OMEGA: f64 = 1.0;
 /// Duration of the run, s.
@@ -74,6 +67,8 @@ pub const START: [f64; 2] = [0.0, OMEGA];
 /// The two-mode ODE and the closed form, with what both compute once.
 #[derive(Clone, Copy, Debug)]
 pub struct Work {
+    /// The object.
+    pub parameters: Parameters,
     /// ωn, rad/s.
     pub natural: f64,
     /// u at which a slip is without force.
@@ -91,18 +86,21 @@ pub struct Work {
 }
 
 impl Work {
-    /// The work of this comparison.
-    pub fn new() -> Self {
-        let natural = (STIFFNESS / INERTIA).sqrt();
-        let lambda = (STATIC - KINETIC) / (OMEGA * (INERTIA * STIFFNESS).sqrt());
+    /// The work with an object.
+    pub fn new(parameters: Parameters) -> Self {
+        let stiffness = parameters.stiffness_nm_per_rad;
+        let (kinetic, limit) = (parameters.kinetic_torque_nm, parameters.static_torque_nm);
+        let natural = parameters.natural_rad_s();
+        let lambda = (limit - kinetic) / (OMEGA * parameters.impedance_nms_per_rad());
         Self {
+            parameters,
             natural,
-            kinetic_u: natural * KINETIC / STIFFNESS,
-            static_u: natural * STATIC / STIFFNESS,
-            torque_per_u: STIFFNESS / natural,
-            stick_s: 2.0 * (STATIC - KINETIC) / (STIFFNESS * OMEGA),
+            kinetic_u: natural * kinetic / stiffness,
+            static_u: natural * limit / stiffness,
+            torque_per_u: stiffness / natural,
+            stick_s: 2.0 * (limit - kinetic) / (stiffness * OMEGA),
             slip_s: 2.0 * (PI - lambda.atan()) / natural,
-            first_s: STATIC / (STIFFNESS * OMEGA),
+            first_s: limit / (stiffness * OMEGA),
         }
     }
 
@@ -142,7 +140,7 @@ impl Work {
         let y = black_box(y);
         match mode {
             Mode::Stick => self.torque_per_u * y[0],
-            Mode::Slip => KINETIC,
+            Mode::Slip => self.parameters.kinetic_torque_nm,
         }
     }
 
@@ -181,6 +179,9 @@ impl Work {
     /// time is an error of the whole jump.
     pub fn closed_form_torque(&self, time_s: f64) -> Option<f64> {
         const NEAR_S: f64 = 1e-6;
+        let p = &self.parameters;
+        let per_second = p.stiffness_nm_per_rad * OMEGA;
+        let kinetic = p.kinetic_torque_nm;
         let cycle_s = self.stick_s + self.slip_s;
         let since_s = time_s - self.first_s;
         let near = |x: f64| x.abs() <= NEAR_S;
@@ -188,16 +189,16 @@ impl Work {
             return None;
         }
         if since_s < 0.0 {
-            return Some(STIFFNESS * OMEGA * time_s);
+            return Some(per_second * time_s);
         }
         let in_cycle_s = since_s.rem_euclid(cycle_s);
         let in_stick_s = in_cycle_s - self.slip_s;
         if near(in_cycle_s) || near(in_stick_s) || near(in_cycle_s - cycle_s) {
             None
         } else if in_stick_s < 0.0 {
-            Some(KINETIC)
+            Some(kinetic)
         } else {
-            Some((2.0 * KINETIC - STATIC) + STIFFNESS * OMEGA * in_stick_s)
+            Some((2.0 * kinetic - p.static_torque_nm) + per_second * in_stick_s)
         }
     }
 }
@@ -238,15 +239,17 @@ impl Delivery {
 /// Delivers samples in their order as a solver gets on.
 pub struct Sampler<'a> {
     task: Task,
+    kinetic: f64,
     torque: &'a mut [f64],
     next: usize,
 }
 
 impl<'a> Sampler<'a> {
     /// Begins with the first sample.
-    pub fn new(task: Task, torque: &'a mut [f64]) -> Self {
+    pub fn new(work: &Work, task: Task, torque: &'a mut [f64]) -> Self {
         Self {
             task,
+            kinetic: work.parameters.kinetic_torque_nm,
             torque,
             next: 0,
         }
@@ -267,7 +270,7 @@ impl<'a> Sampler<'a> {
         let end = ((until_s * RATE_HZ) as usize).clamp(self.next, SAMPLES);
         let begin = std::mem::replace(&mut self.next, end);
         if self.task == Task::SamplesInStick && mode == Mode::Slip {
-            self.torque[begin..end].fill(KINETIC);
+            self.torque[begin..end].fill(self.kinetic);
             return;
         }
         for n in begin..end {
@@ -283,39 +286,4 @@ impl<'a> Sampler<'a> {
 pub type Runner = Box<dyn FnMut(Task, &mut Delivery) -> Result<(), String>>;
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_closed_form_has_637_events_and_jumps_at_them() {
-        let work = Work::new();
-        let events = work.closed_form_events();
-        assert_eq!(events.len(), 637);
-        assert_eq!(events[0], 1e-3);
-        for (n, &event_s) in events.iter().enumerate() {
-            let torque = |time_s| work.closed_form_torque(time_s).unwrap();
-            assert_eq!(work.closed_form_torque(event_s), None);
-            let (before, after) = (torque(event_s - 2e-6), torque(event_s + 2e-6));
-            let (expected_before, expected_after) = if n % 2 == 0 {
-                (STATIC, KINETIC)
-            } else {
-                (KINETIC, 2.0 * KINETIC - STATIC)
-            };
-            assert!((before - expected_before).abs() < 1e-3, "{n}");
-            assert!((after - expected_after).abs() < 1e-3, "{n}");
-        }
-    }
-
-    #[test]
-    fn an_excursion_above_the_shaft_speed_is_longer_than_the_safe_step() {
-        let work = Work::new();
-        // v of a free swing from a break: Ω·cos − (Ts − Tk)/√(J·kr)·sin of ωn·t.
-        let v = |t: f64| {
-            let (sin, cos) = (work.natural * t).sin_cos();
-            OMEGA * cos - (STATIC - KINETIC) / (INERTIA * STIFFNESS).sqrt() * sin
-        };
-        assert!(v(work.slip_s + 1e-9) > OMEGA);
-        assert!(v(work.slip_s + work.safe_step_s()) > OMEGA);
-        assert!(v(work.slip_s + work.safe_step_s() / 0.98) < OMEGA);
-    }
-}
+mod tests;

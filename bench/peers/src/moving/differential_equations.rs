@@ -1,7 +1,8 @@
 //! `differential-equations` on a moving hand; driven as at a constant speed, see
 //! `peers/differential_equations.rs`.
 
-use super::phases::{Integrator, PhaseEnd, Phases, Step};
+use super::integrator::{Integrator, PhaseEnd, Step};
+use super::phases::Phases;
 use super::{Runner, Setting};
 use differential_equations::control::ControlFlag;
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};

@@ -1,6 +1,7 @@
 //! `diffsol` on a moving hand; driven as at a constant speed, see `peers/diffsol.rs`.
 
-use super::phases::{Integrator, PhaseEnd, Phases, Step};
+use super::integrator::{Integrator, PhaseEnd, Step};
+use super::phases::Phases;
 use super::{Runner, Setting};
 use diffsol::{
     NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverConfig,

@@ -1,6 +1,7 @@
 //! `ivp` on a moving hand; driven as at a constant speed, see `peers/ivp.rs`.
 
-use super::phases::{Integrator, PhaseEnd, Phases, Step};
+use super::integrator::{Integrator, PhaseEnd, Step};
+use super::phases::Phases;
 use super::{Runner, Setting};
 use crate::peers::falls_at::falls_at;
 use ivp::methods::{DOP853, DOPRI5};

@@ -12,9 +12,9 @@
 //! A peer that knows the system need not integrate a stick: θ = θ₀ + φ(t) − φ₀ ([`StickBy::Position`]); all
 //! that is left then is the library's search for the event.
 
+use super::integrator::{Integrator, Step};
 use crate::motion::{Cursor, Hand};
-use crate::work::{INERTIA, KINETIC, STATIC, STIFFNESS};
-use crepitus_model::Convention;
+use crepitus_model::{Convention, Parameters};
 use std::cell::Cell;
 use std::f64::consts::PI;
 
@@ -55,54 +55,29 @@ pub struct Phases {
     longest_stick_step_s: f64,
     convention: Convention,
     stick_by: StickBy,
+    joint: Parameters,
     natural: f64,
+    /// u at which a slip is without force.
+    kinetic_u: f64,
     phase: Cell<Phase>,
-}
-
-/// Steps of a solver, s.
-#[derive(Clone, Copy, Debug)]
-pub struct Step {
-    /// The first; none where the library has to find one.
-    pub first_s: Option<f64>,
-    /// The longest.
-    pub longest_s: f64,
-}
-
-/// End of a phase as a solver found it.
-#[derive(Clone, Copy, Debug)]
-pub struct PhaseEnd {
-    /// Time of the end, s.
-    pub time_s: f64,
-    /// The state there.
-    pub y: [f64; 2],
-    /// The step with which it would have gone on, s.
-    pub step_s: f64,
-}
-
-/// A library that integrates one phase of [`Phases`] after the other.
-pub trait Integrator {
-    /// Integrates from `from_s` and `y` to the end of the phase; none if the run ends first.
-    ///
-    /// # Errors
-    /// The library's message if it gives up.
-    fn phase(&mut self, from_s: f64, y: [f64; 2], step: Step) -> Result<Option<PhaseEnd>, String>;
 }
 
 impl Phases {
     /// Creates the problem, in stick at θ = 0 at the start.
-    ///
-    /// # Errors
-    /// A motion that peers cannot be given.
-    pub fn new(hand: &Hand, convention: Convention, stick_by: StickBy) -> Result<Self, String> {
-        Ok(Self {
-            cursor: Cursor::new(&hand.motion)?,
+    pub fn new(hand: &Hand, convention: Convention, stick_by: StickBy) -> Self {
+        let joint = hand.joint.parameters;
+        let natural = joint.natural_rad_s();
+        Self {
+            cursor: Cursor::new(&hand.motion, hand.duration_s),
             duration_s: hand.duration_s,
             longest_stick_step_s: hand.turn_s,
             convention,
             stick_by,
-            natural: (STIFFNESS / INERTIA).sqrt(),
+            joint,
+            natural,
+            kinetic_u: natural * joint.kinetic_torque_nm / joint.stiffness_nm_per_rad,
             phase: Cell::new(Phase::Stick { offset_rad: 0.0 }),
-        })
+        }
     }
 
     /// Duration of the run, s.
@@ -121,7 +96,7 @@ impl Phases {
             (Phase::Stick { .. }, StickBy::Position) => dydt.fill(0.0),
             (Phase::Slip { sense }, _) => {
                 dydt[0] = self.natural * y[1];
-                dydt[1] = self.natural * (sense * (self.natural * KINETIC / STIFFNESS) - y[0]);
+                dydt[1] = self.natural * (sense * self.kinetic_u - y[0]);
             }
         }
     }
@@ -143,7 +118,7 @@ impl Phases {
     pub fn event(&self, time_s: f64, y: &[f64]) -> f64 {
         match self.phase.get() {
             Phase::Stick { offset_rad } => {
-                STATIC - self.stick_torque(time_s, y[0], offset_rad).abs()
+                self.joint.static_torque_nm - self.stick_torque(time_s, y[0], offset_rad).abs()
             }
             Phase::Slip { sense } => sense * (self.omega(time_s) - y[1]),
         }
@@ -213,9 +188,10 @@ impl Phases {
             }
             Phase::Slip { sense } => {
                 let theta_rad = y[0] / self.natural;
-                let required = STIFFNESS * theta_rad + self.inertial(time_s);
+                let required = self.joint.stiffness_nm_per_rad * theta_rad + self.inertial(time_s);
+                let limit = self.joint.static_torque_nm * (1.0 + SLACK);
                 // More than a stick can hold: the object slips on the other way.
-                if required.abs() > STATIC * (1.0 + SLACK) && sense * required < 0.0 {
+                if required.abs() > limit && sense * required < 0.0 {
                     self.slip(time_s, y[0], -sense)
                 } else {
                     self.stick(time_s, theta_rad)
@@ -244,28 +220,34 @@ impl Phases {
             return None;
         }
         let speed = (sense * self.omega(time_s)).max(0.0);
-        let lag = (STATIC - KINETIC).atan2(speed * (INERTIA * STIFFNESS).sqrt());
-        let theta_rad = sense * (2.0 * KINETIC - STATIC) / STIFFNESS;
+        let p = &self.joint;
+        let (kinetic, limit) = (p.kinetic_torque_nm, p.static_torque_nm);
+        let lag = (limit - kinetic).atan2(speed * p.impedance_nms_per_rad());
+        let theta_rad = sense * (2.0 * kinetic - limit) / p.stiffness_nm_per_rad;
         Some((time_s + 2.0 * (PI - lag) / self.natural, theta_rad))
     }
 
     /// A step a little longer than the stick, if the torque goes on as it does now.
     fn stick_step_s(&self, time_s: f64, y: [f64; 2]) -> f64 {
         let shaft = self.cursor.piece(time_s).at(time_s);
-        let torque = STIFFNESS * y[0] / self.natural + self.inertial(time_s);
+        let stiffness = self.joint.stiffness_nm_per_rad;
+        let torque = stiffness * y[0] / self.natural + self.inertial(time_s);
         let rate = match self.convention {
-            Convention::Physical => STIFFNESS * shaft.omega_rad_s + INERTIA * shaft.omega_ddot,
-            _ => STIFFNESS * shaft.omega_rad_s,
+            Convention::Physical => {
+                stiffness * shaft.omega_rad_s + self.joint.inertia_kg_m2 * shaft.omega_ddot
+            }
+            _ => stiffness * shaft.omega_rad_s,
         };
-        let room = STATIC - torque * rate.signum();
+        let room = self.joint.static_torque_nm - torque * rate.signum();
         (1.25 * room / rate.abs()).clamp(1e-6, self.longest_stick_step_s)
     }
 
     #[inline]
     fn stick_torque(&self, time_s: f64, u: f64, offset_rad: f64) -> f64 {
+        let stiffness = self.joint.stiffness_nm_per_rad;
         let physical = self.convention == Convention::Physical;
         if !physical && self.stick_by == StickBy::Integration {
-            return STIFFNESS * (u / self.natural);
+            return stiffness * (u / self.natural);
         }
         // The shaft is computed once for both of its terms.
         let shaft = self.cursor.piece(time_s).at(time_s);
@@ -274,17 +256,19 @@ impl Phases {
             StickBy::Position => offset_rad + shaft.phi_rad,
         };
         let inertial = if physical {
-            INERTIA * shaft.omega_dot
+            self.joint.inertia_kg_m2 * shaft.omega_dot
         } else {
             0.0
         };
-        STIFFNESS * theta_rad + inertial
+        stiffness * theta_rad + inertial
     }
 
     #[inline]
     fn inertial(&self, time_s: f64) -> f64 {
         match self.convention {
-            Convention::Physical => INERTIA * self.cursor.piece(time_s).at(time_s).omega_dot,
+            Convention::Physical => {
+                self.joint.inertia_kg_m2 * self.cursor.piece(time_s).at(time_s).omega_dot
+            }
             Convention::Frozen | Convention::Paper => 0.0,
         }
     }

@@ -64,9 +64,9 @@ fn per_event(entrant: &Entrant, events: usize) -> String {
 
 fn setting(setting: Setting) -> String {
     let tolerance = format!("{:.1e}", setting.tolerance).replace(".0e", "e");
-    let limit = setting
-        .slip_limit_s
-        .map_or(String::new(), |s| format!(", slip steps ≤ {} ms", 1e3 * s));
+    let limit = setting.slip_limit_s.map_or(String::new(), |s| {
+        format!(", slip steps ≤ {:.2} ms", 1e3 * s)
+    });
     let stick = match setting.stick_by {
         StickBy::Integration => "θ integrated",
         StickBy::Position => "θ = φ + const",

@@ -21,13 +21,13 @@ type Method<const O: usize, const S: usize, const I: usize> =
     ExplicitRungeKutta<Ordinary, DormandPrince, f64, [f64; 2], O, S, I>;
 
 /// The method of order 5.
-pub(super) fn dopri5(setting: Setting) -> Runner {
-    runner(ExplicitRungeKutta::dopri5(), setting)
+pub(super) fn dopri5(work: Work, setting: Setting) -> Runner {
+    runner(ExplicitRungeKutta::dopri5(), work, setting)
 }
 
 /// The method of order 8.
-pub(super) fn dop853(setting: Setting) -> Runner {
-    runner(ExplicitRungeKutta::dop853(), setting)
+pub(super) fn dop853(work: Work, setting: Setting) -> Runner {
+    runner(ExplicitRungeKutta::dop853(), work, setting)
 }
 
 struct System {
@@ -55,24 +55,27 @@ impl Event<f64, [f64; 2]> for System {
 
 fn runner<const O: usize, const S: usize, const I: usize>(
     method: Method<O, S, I>,
+    work: Work,
     setting: Setting,
 ) -> Runner {
     let mut method = method
         .rtol(setting.tolerance)
         .atol(setting.tolerance)
         .max_steps(usize::MAX);
-    Box::new(move |task, out| run(&mut method, setting, task, out).map_err(|e| format!("{e:?}")))
+    Box::new(move |task, out| {
+        run(&mut method, work, setting, task, out).map_err(|e| format!("{e:?}"))
+    })
 }
 
 type Failure = differential_equations::error::Error<f64, [f64; 2]>;
 
 fn run<const O: usize, const S: usize, const I: usize>(
     method: &mut Method<O, S, I>,
+    work: Work,
     setting: Setting,
     task: Task,
     out: &mut Delivery,
 ) -> Result<(), Failure> {
-    let work = Work::new();
     let mut steps = Steps::new(&work, setting);
     let mut system = System {
         work,
@@ -81,7 +84,7 @@ fn run<const O: usize, const S: usize, const I: usize>(
     let mut solution = Solution::new();
     let (mut y, mut begun_s) = (START, 0.0);
     let Delivery { events, torque } = out;
-    let mut sampler = Sampler::new(task, torque);
+    let mut sampler = Sampler::new(&work, task, torque);
     events.clear();
     loop {
         let mode = system.mode;

@@ -19,8 +19,8 @@ type Matrix = NalgebraMat<f64>;
 
 /// The problem, with the mode in a cell that its closures share.
 macro_rules! problem {
-    ($setting:expr, $mode:expr) => {{
-        let work = Work::new();
+    ($work:expr, $setting:expr, $mode:expr) => {{
+        let work = $work;
         let (rhs, jacobian, root) = ($mode.clone(), $mode.clone(), $mode.clone());
         OdeBuilder::<Matrix>::new()
             .h0(work.stick_s / 2.0)
@@ -38,29 +38,29 @@ macro_rules! problem {
 }
 
 /// The explicit method.
-pub(super) fn tsit45(setting: Setting) -> Result<Runner, String> {
+pub(super) fn tsit45(work: Work, setting: Setting) -> Result<Runner, String> {
     let mode = Rc::new(Cell::new(Mode::Stick));
-    let problem = problem!(setting, mode);
+    let problem = problem!(work, setting, mode);
     Ok(Box::new(move |task, out| {
         mode.set(Mode::Stick);
         problem
             .tsit45()
-            .and_then(|solver| run(solver, &mode, setting, task, out, |_| {}))
+            .and_then(|solver| run(solver, work, &mode, setting, task, out, |_| {}))
             .map_err(|e| e.to_string())
     }))
 }
 
 /// The implicit multistep method.
-pub(super) fn bdf(setting: Setting) -> Result<Runner, String> {
+pub(super) fn bdf(work: Work, setting: Setting) -> Result<Runner, String> {
     let mode = Rc::new(Cell::new(Mode::Stick));
-    let problem = problem!(setting, mode);
+    let problem = problem!(work, setting, mode);
     Ok(Box::new(move |task, out| {
         mode.set(Mode::Stick);
         problem
             .bdf::<NalgebraLU<f64>>()
             .and_then(|solver| {
                 // The method starts again at order 1: the step of the old order would be rejected.
-                run(solver, &mode, setting, task, out, |solver| {
+                run(solver, work, &mode, setting, task, out, |solver| {
                     let p = &problem;
                     solver
                         .state_mut()
@@ -73,6 +73,7 @@ pub(super) fn bdf(setting: Setting) -> Result<Runner, String> {
 
 fn run<'a, E, S>(
     mut solver: S,
+    work: Work,
     mode: &Cell<Mode>,
     setting: Setting,
     task: Task,
@@ -84,13 +85,12 @@ where
     S: OdeSolverMethod<'a, E>,
     S::Config: OdeSolverConfig<f64>,
 {
-    let work = Work::new();
     let mut steps = Steps::new(&work, setting);
     let growth = *solver.config().as_base_ref().maximum_timestep_growth;
     let context = *solver.state().y.context();
     let mut y = NalgebraVec::zeros(START.len(), context);
     let Delivery { events, torque } = out;
-    let mut sampler = Sampler::new(task, torque);
+    let mut sampler = Sampler::new(&work, task, torque);
     events.clear();
     loop {
         let now = mode.get();

@@ -14,8 +14,8 @@ use ivp::prelude::{ControlFlag, FirstOrderSystem, StepInterpolant};
 use ivp::solout::SolOut;
 
 /// The method of order 5.
-pub(super) fn dopri5(setting: Setting) -> Runner {
-    runner(setting, move |system, y, first_s, limit_s, watch| {
+pub(super) fn dopri5(work: Work, setting: Setting) -> Runner {
+    runner(work, setting, move |system, y, first_s, limit_s, watch| {
         DOPRI5::builder()
             .max_steps(usize::MAX)
             .maybe_first_step(first_s)
@@ -36,8 +36,8 @@ pub(super) fn dopri5(setting: Setting) -> Runner {
 }
 
 /// The method of order 8.
-pub(super) fn dop853(setting: Setting) -> Runner {
-    runner(setting, move |system, y, first_s, limit_s, watch| {
+pub(super) fn dop853(work: Work, setting: Setting) -> Runner {
+    runner(work, setting, move |system, y, first_s, limit_s, watch| {
         DOP853::builder()
             .max_steps(usize::MAX)
             .maybe_first_step(first_s)
@@ -135,14 +135,20 @@ type Solve<'s> =
     &'s dyn Fn(&System, &[f64], Option<f64>, f64, &mut Watch<'_>) -> Result<(), String>;
 
 fn runner(
+    work: Work,
     setting: Setting,
     solve: impl Fn(&System, &[f64], Option<f64>, f64, &mut Watch<'_>) -> Result<(), String> + 'static,
 ) -> Runner {
-    Box::new(move |task, out| run(&solve, setting, task, out))
+    Box::new(move |task, out| run(&solve, work, setting, task, out))
 }
 
-fn run(solve: Solve<'_>, setting: Setting, task: Task, out: &mut Delivery) -> Result<(), String> {
-    let work = Work::new();
+fn run(
+    solve: Solve<'_>,
+    work: Work,
+    setting: Setting,
+    task: Task,
+    out: &mut Delivery,
+) -> Result<(), String> {
     let mut steps = Steps::new(&work, setting);
     let Delivery { events, torque } = out;
     events.clear();
@@ -155,7 +161,7 @@ fn run(solve: Solve<'_>, setting: Setting, task: Task, out: &mut Delivery) -> Re
         begun_s: 0.0,
         before: 0.0,
         step_s: 0.0,
-        sampler: Sampler::new(task, torque),
+        sampler: Sampler::new(&work, task, torque),
         event: None,
     };
     loop {
