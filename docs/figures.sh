@@ -27,6 +27,14 @@ for picture in frequency-f64 frequency-f32 tick-torque-f32; do
     echo "$image"
 done
 
+cargo run --profile dist --features emulator --quiet -- laws --quick --target --pictures --out target/figures/laws >target/figures/laws.txt
+for picture in model-errors numerical-errors grating-cycles; do
+    cp "target/figures/laws/$picture.svg" "docs/images/laws-$picture.svg"
+    echo "docs/images/laws-$picture.svg"
+done
+# Its table in docs/friction-laws.md is that of the screen: compare them.
+cat target/figures/laws.txt
+
 cp target/figures/accuracy/cycles.csv host/studies/src/accuracy/target/cycles.csv
 echo host/studies/src/accuracy/target/cycles.csv
 for convention in frozen physical; do
