@@ -159,6 +159,7 @@ impl HandPath {
 mod tests {
     use super::*;
     use fastrand::Rng;
+    use std::ops::RangeInclusive;
 
     const TICK_S: f64 = 5e-5;
     /// Ticks between two pictures at 120 and at 30 Hz.
@@ -273,15 +274,15 @@ mod tests {
         }
     }
 
-    /// Largest ratio of the path's speed to that of a steady pointer, of which a busy page sends so many targets a second.
-    fn haste(rng: &mut Rng, rates: [f64; 2], speed: f64) -> f64 {
-        let mut gap = || (1.0 / (rates[0] + rng.f64() * (rates[1] - rates[0])) / TICK_S) as u32;
+    /// Largest ratio of the path's speed to that of a steady pointer, of which a busy page sends a target every so many
+    /// ticks.
+    fn haste(rng: &mut Rng, gaps: RangeInclusive<u32>, speed: f64) -> f64 {
         let mut path = at(0.0);
         let (mut next, mut fastest) = (0, 0.0_f64);
         for tick in 0..60_000 {
             if tick == next {
                 path.aim(speed * f64::from(tick) * TICK_S);
-                next += gap();
+                next += rng.u32(gaps.clone());
             }
             let now = path.advance(TICK_S);
             // It learns for a second.
@@ -295,9 +296,10 @@ mod tests {
     #[test]
     fn a_busy_page_makes_the_hand_late_and_no_faster() {
         let mut rng = Rng::with_seed(5);
-        for (rates, most) in [([20.0, 60.0], 1.05), ([6.0, 30.0], 1.15)] {
-            let ratio = haste(&mut rng, rates, 2.0);
-            assert!(ratio < most, "{rates:?}: {ratio}");
+        // 20 to 60 targets a second, and 6 to 30.
+        for (gaps, most) in [(333..=1_000, 1.05), (666..=3_333, 1.15)] {
+            let ratio = haste(&mut rng, gaps.clone(), 2.0);
+            assert!(ratio < most, "{gaps:?}: {ratio}");
         }
     }
 
