@@ -24,6 +24,7 @@
 pub mod actuator;
 pub mod answer;
 pub mod convergence;
+mod hands;
 pub mod held_torque;
 pub mod input;
 pub mod measure;

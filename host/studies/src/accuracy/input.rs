@@ -4,7 +4,6 @@
 //! [`EncoderReader`] estimates from them, both in single precision. A count is 36 µrad
 //! of the joint. The estimate begins settled, and the encoder has its defaults.
 
-use crate::accuracy::scenes::StudyScene;
 use crate::sampling::{Sampling, Walk};
 use crepitus_model::control::encoder::{EncoderReader, EncoderSettings};
 use crepitus_model::{Real, SettingsError, ShaftStep};
@@ -35,7 +34,7 @@ impl<'a, F: Real> Feed<'a, F> {
     ///
     /// # Errors
     /// None in practice: the encoder's defaults are allowed.
-    pub fn new(scene: &StudyScene, sampling: &Sampling<'a>, n: u64) -> Result<Self, SettingsError> {
+    pub fn new(input: Input, sampling: &Sampling<'a>, n: u64) -> Result<Self, SettingsError> {
         let settings = EncoderSettings::default();
         let rad_per_count = settings.rad_per_count();
         let walk = sampling.walk_from(n);
@@ -45,7 +44,7 @@ impl<'a, F: Real> Feed<'a, F> {
             EncoderReader::new(&settings, sampling.step_s(), count, omega)
         };
         Ok(Self {
-            reader: match scene.input {
+            reader: match input {
                 Input::Exact => None,
                 Input::Encoder => Some(reader()?),
             },
@@ -78,7 +77,7 @@ fn count(phi_rad: f64, rad_per_count: f64) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::accuracy::scenes::standard;
+    use crate::accuracy::scenes::{StudyScene, standard};
 
     fn steps(input: Input, n: u64) -> Vec<ShaftStep<f32>> {
         let scene = StudyScene {
@@ -88,7 +87,7 @@ mod tests {
         assert_eq!(scene.name, "constant-0.988");
         let sampling = Sampling::new(&scene.motion, 1.0, 5e-5);
         let mut chunk = Vec::new();
-        let mut feed = Feed::new(&scene, &sampling, n).unwrap();
+        let mut feed = Feed::new(scene.input, &sampling, n).unwrap();
         feed.fill(&mut chunk, 30_000);
         chunk
     }

@@ -134,7 +134,7 @@ fn observe<F: Precise>(
         lead: Lead::new(&scene.settings, sampling.step_s(), F::IS_SINGLE),
         finite: true,
     };
-    let mut feed = Feed::new(scene, sampling, 0)?;
+    let mut feed = Feed::new(scene.input, sampling, 0)?;
     let mut chunk = Vec::with_capacity(CHUNK_STEPS);
     let (mut n, mut index, mut tie) = (0_u64, 0_usize, 0_usize);
     loop {

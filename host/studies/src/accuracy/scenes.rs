@@ -9,7 +9,7 @@
 //! is crepitus alone (the paper's is `coarse`); and a speed and the paper's hands behind the
 //! encoder of the device.
 
-use crate::accuracy::convergence;
+use crate::accuracy::hands::hands;
 use crate::accuracy::input::Input;
 use crate::true_events::{TrueEvent, true_events, true_events_while};
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
@@ -137,7 +137,7 @@ pub fn standard() -> Result<Vec<StudyScene>, SettingsError> {
 pub fn full() -> Result<Vec<StudyScene>, SettingsError> {
     let mut scenes = standard()?;
     for (place, joint) in joints().iter().enumerate() {
-        for (name, title, motion) in convergence::hands() {
+        for (name, title, motion) in hands() {
             for convention in [Convention::Frozen, Convention::Physical] {
                 let settings = Settings {
                     parameters: joint.parameters,

@@ -92,8 +92,8 @@ impl<'a> Track<'a> {
         let start = (sampling.steps() / 4).saturating_sub(length / 2);
         let most = usize::try_from(length).unwrap_or(usize::MAX);
         let (mut single, mut double) = (Vec::new(), Vec::new());
-        Feed::new(scene, sampling, start)?.fill(&mut single, most);
-        Feed::new(scene, sampling, start)?.fill(&mut double, most);
+        Feed::new(scene.input, sampling, start)?.fill(&mut single, most);
+        Feed::new(scene.input, sampling, start)?.fill(&mut double, most);
         Ok(Self {
             scene,
             step_s: sampling.step_s(),

@@ -38,7 +38,7 @@ pub fn add<T>(
         let inputs: Vec<Input> = steps.iter().map(input).collect();
         on_target(&plan, &inputs)
     };
-    on_controller(study, joint, run, watcher)
+    on_controller(&mut study.costs, joint, run, watcher)
 }
 
 fn input(step: &ShaftStep<f32>) -> Input {

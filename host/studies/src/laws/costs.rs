@@ -5,7 +5,6 @@
 //! study of accuracy times its rungs.
 
 use super::runner::{TICK_S, between};
-use super::study::{LawStudy, Plan};
 use super::tasks::DRAG_RAD_S;
 use crate::accuracy::target::TargetError;
 use crate::accuracy::timing::{cost, ns_per_step, stepping};
@@ -109,24 +108,23 @@ pub fn timed_motions() -> [Vec<ShaftStep<f32>>; 2] {
     ]
 }
 
-/// Measures the laws on this computer, on the first joint of the plan.
+/// Measures the laws on this computer, on this joint.
 ///
 /// # Errors
 /// Error of the watcher, or a joint that is invalid.
 pub(super) fn costs(
     laws: &[&Entry],
-    plan: &Plan,
+    joint: &Parameters,
+    repeats: usize,
     watcher: &mut dyn Watcher,
 ) -> Result<Vec<Costs>, StudyError> {
-    let joint = plan.joints.first().map(|joint| joint.parameters);
-    let joint = joint.unwrap_or_default();
     let motions = timed_motions();
     let reading = cpu_time::reading_cost();
-    let turns = 2 * plan.repeats * laws.len();
+    let turns = 2 * repeats * laws.len();
     let mut done = 0_usize;
     // By law, by motion.
     let mut times = vec![[Vec::new(), Vec::new()]; laws.len()];
-    for repeat in 0..plan.repeats {
+    for repeat in 0..repeats {
         for turn in 0..laws.len() {
             let place = if repeat.is_multiple_of(2) {
                 turn
@@ -139,7 +137,7 @@ pub(super) fn costs(
             for (times, steps) in times.iter_mut().zip(&motions) {
                 times.push(ns_per_step(steps, |total| {
                     let omega = steps.first().map_or(0.0, |s| s.omega_start_rad_s);
-                    law.timed(&joint, TICK_S, omega, &mut |stepper| {
+                    law.timed(joint, TICK_S, omega, &mut |stepper| {
                         *total += stepping(steps, reading, stepper);
                     })
                 })?);
@@ -151,8 +149,8 @@ pub(super) fn costs(
     let summed = laws.iter().zip(&mut times).map(|(law, [grating, knee])| {
         Ok::<_, SettingsError>(Costs {
             law: law.name,
-            bytes: law.single(&joint, TICK_S, 0.0)?.bytes(),
-            repeats: plan.repeats,
+            bytes: law.single(joint, TICK_S, 0.0)?.bytes(),
+            repeats,
             grating: step_time(grating),
             knee: step_time(knee),
             controller: None,
@@ -170,20 +168,20 @@ fn step_time(times: &mut [f64]) -> Option<StepTime> {
     })
 }
 
-/// Runs the laws of a study on the controller, from rest on both timed motions. `on_controller` gets the
+/// Runs the laws of these costs on the controller, from rest on both timed motions. `on_controller` gets the
 /// name of a law, its joint, and steps of 50 µs, and returns what each of them cost.
 ///
 /// # Errors
 /// Error of the controller or of the watcher.
 pub fn on_controller<T>(
-    study: &mut LawStudy,
+    costs: &mut [Costs],
     joint: &Parameters,
     mut on_controller: impl FnMut(&'static str, &Parameters, &[ShaftStep<f32>]) -> Result<Vec<Call>, T>,
     watcher: &mut dyn Watcher,
 ) -> Result<(), TargetError<T>> {
     let motions = timed_motions();
-    let laws = study.costs.len();
-    for (place, costs) in study.costs.iter_mut().enumerate() {
+    let laws = costs.len();
+    for (place, costs) in costs.iter_mut().enumerate() {
         let mut sum = Cost::default();
         for steps in &motions {
             // Around the middle both grate, or would.

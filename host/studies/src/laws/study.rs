@@ -99,6 +99,8 @@ pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<LawStudy, StudyErro
     let entries: Vec<&dyn Contestant> = plan.entries().map(|e| e as &dyn Contestant).collect();
     let rows = run_with(plan, &entries, &mut Part::new(watcher, 0.0, 1.0 - TIMES))?;
     let laws: Vec<_> = plan.entries().collect();
+    let joint = plan.joints.first().map(|joint| joint.parameters);
+    let joint = joint.unwrap_or_default();
     let times = &mut Part::new(watcher, 1.0 - TIMES, TIMES);
     Ok(LawStudy {
         machine: Machine::here(),
@@ -106,7 +108,7 @@ pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<LawStudy, StudyErro
         joints: plan.joints.iter().map(|joint| joint.name).collect(),
         laws: laws.iter().map(|law| (law.name, law.title)).collect(),
         rows,
-        costs: costs(&laws, plan, times)?,
+        costs: costs(&laws, &joint, plan.repeats, times)?,
         wall_s: begun.elapsed().as_secs_f64(),
     })
 }
