@@ -106,6 +106,20 @@ fn every_source_file_that_is_named_exists() {
 }
 
 #[test]
+fn every_page_that_a_source_names_exists() {
+    let (root, mut all) = (repository(), String::new());
+    sources(&root, &mut all);
+    let ends = |c: char| !(c.is_ascii_alphanumeric() || "-_/.".contains(c));
+    let rests = all.split("docs/").skip(1);
+    let names = rests.map(|rest| rest.split(ends).next().unwrap().trim_end_matches('.'));
+    let is_page = |name: &&str| Path::new(name).extension().is_some_and(|e| e == "md");
+    let pages: BTreeSet<&str> = names.filter(is_page).collect();
+    let is_missing = |page: &&&str| !root.join("docs").join(page).is_file();
+    let missing: Vec<_> = pages.iter().filter(is_missing).collect();
+    assert!(pages.len() > 20 && missing.is_empty(), "{missing:?}");
+}
+
+#[test]
 fn every_page_is_in_the_summary() {
     let docs = repository().join("docs");
     let summary = fs::read_to_string(docs.join("SUMMARY.md")).unwrap();

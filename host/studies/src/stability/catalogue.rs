@@ -94,6 +94,8 @@ pub fn find(wanted: &str) -> Result<Case, Vec<&'static str>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
+    use std::path::Path;
 
     #[test]
     fn cases_are_found_by_number_and_name_and_slips_of_the_pen_lead_there() {
@@ -102,5 +104,56 @@ mod tests {
         assert_eq!(find("constant-sped").unwrap_err()[0], "constant-speed");
         assert!(find("velocity").unwrap_err().len() > 1);
         assert_eq!(find("xyzzy").unwrap_err(), [""; 0]);
+    }
+
+    /// Pages, source files and reference cases that a case names, and the part of a page after a comma.
+    #[test]
+    fn every_source_is_there() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let references = fs::read_dir(root.join("tests/reference-cases")).unwrap();
+        let references: Vec<_> = references.map(|f| f.unwrap().file_name()).collect();
+        let (mut pages, mut cases) = (0, 0);
+        for case in all() {
+            let stops = |c: char| c == ' ' || ",;:".contains(c);
+            for word in case.source.split(stops) {
+                if ["docs/", "model/", "tests/"]
+                    .iter()
+                    .any(|folder| word.starts_with(folder))
+                {
+                    assert!(
+                        root.join(word).exists(),
+                        "{}: {word} does not exist",
+                        case.name
+                    );
+                }
+                if case.source.contains("reference-cases") && is_reference(word) {
+                    cases += 1;
+                    let mut files = references.iter().map(|file| file.to_string_lossy());
+                    assert!(
+                        files.any(|file| file.starts_with(word)),
+                        "{}: {word}",
+                        case.name
+                    );
+                }
+            }
+            if let Some((page, part)) = case.source.split_once(".md, ") {
+                pages += 1;
+                let page = page.rsplit(' ').next().unwrap_or_default();
+                let text = fs::read_to_string(root.join(page).with_extension("md")).unwrap();
+                let part = part.split([',', ';', ':']).next().unwrap_or_default();
+                let has = text.to_lowercase().contains(&part.to_lowercase());
+                assert!(has, "{}: {page}.md has no \"{part}\"", case.name);
+            }
+        }
+        assert!(pages > 20 && cases > 20, "{pages} {cases}");
+    }
+
+    /// A letter and two digits, and not a precision.
+    fn is_reference(word: &str) -> bool {
+        let is_case = |[letter, a, b]: [u8; 3]| {
+            letter.is_ascii_lowercase() && a.is_ascii_digit() && b.is_ascii_digit()
+        };
+        let begin = word.as_bytes().first_chunk();
+        begin.is_some_and(|begin| is_case(*begin)) && !["f32", "f64"].contains(&word)
     }
 }

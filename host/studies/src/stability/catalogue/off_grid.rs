@@ -57,7 +57,7 @@ pub(super) const CASES: &[Case] = &[
         title: "The velocity jumps within a step",
         hard: "A step that draws a line over the jump moves the joint in another way than the hand did: ten events in the place \
                of three, and a reflex that begins half a step late. The step is split where the motion breaks.",
-        source: "docs/solvers.md; the events of the reference",
+        source: "docs/model.md, Inside a step; the events of the reference",
         of: |subject| subject.convention == Convention::Paper || renders_symptoms(subject),
         trials: |subject| {
             let torn = |what, effect, column| solved(what, [TORN, effect], column, 0.5);
@@ -242,7 +242,7 @@ pub(super) const CASES: &[Case] = &[
         title: "A leg that trembles across the gear's gap",
         hard: "At 9 Hz the rotor crosses a gap of 1° with every swing and meets its other side: eighteen impacts a second, each plastic, \
                at a moment within a step. Energy that an impact makes, or a rotor that is left beyond the side that it met, drives the leg.",
-        source: "docs/plant.md, backlash: what an impact takes is in the balance",
+        source: "docs/effects.md, How it is stepped; what an impact takes is in the balance",
         of: |subject| is_frozen(subject) && subject.solver != Rung::Reference,
         trials: |_| {
             let text = "[motion]\nkind = \"sine\"\namplitude_deg = 1.5\nfrequency_hz = 9.0\n\
