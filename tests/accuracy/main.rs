@@ -239,3 +239,46 @@ fn a_scene_without_events_is_studied_too() {
         assert!(number(&row[tick.unwrap()]) < 1e-3, "{row:?}");
     }
 }
+
+/// Bends of a knee as a camera sees them, and recorded knees where they stand beside the repository.
+#[test]
+fn a_recording_is_studied_with_its_cost() {
+    let home = tempfile::tempdir().unwrap();
+    let lines = (0..=200).map(|n| {
+        let t_s = f64::from(n) * 0.01;
+        let angle_deg = 35.0 - 30.0 * (4.0 * t_s).cos() + (12.0 * t_s).sin();
+        format!("{t_s},{angle_deg}\n")
+    });
+    let bends = home.path().join("bends.csv");
+    let table = format!("time_s,knee_flexion_deg\n{}", lines.collect::<String>());
+    fs::write(&bends, table).unwrap();
+    let recorded = support::repository().join("../shared/data");
+    let mut files = vec![bends];
+    files.extend(["opensim_walk_100hz.csv", "opencap_squat_100hz.csv"].map(|f| recorded.join(f)));
+    for file in files.iter().filter(|file| file.is_file()) {
+        let scene = home.path().join("knee.toml");
+        let text = format!(
+            "version = 1\ntitle = \"knee\"\nduration_s = 1.9\n[motion]\nkind = \"recording\"\n\
+             file = {file:?}\ntime_column = \"time_s\"\nangle_column = \"knee_flexion_deg\"\n\
+             [solver]\nkind = \"exact-events\"\nstep_s = 5e-5\n[effects.crepitus]\n"
+        );
+        fs::write(&scene, text).unwrap();
+        let out = home.path().join(file.file_stem().unwrap());
+        let (scene, to) = (scene.display(), out.display());
+        done(&format!("accuracy --scene {scene} --steps 5e-5 --out {to}"));
+        let (header, rows) = csv(&out.join("points.csv"));
+        let column = |name: &str| header.iter().position(|h| h == name).unwrap();
+        let is_ours = |row: &&Vec<String>| {
+            row[column("solver")] == "exact-events" && row[column("precision")] == "f32"
+        };
+        let row = rows.iter().find(is_ours).unwrap();
+        let of = |name: &str| number(&row[column(name)]);
+        assert!(
+            of("events_true") > 20.0 && of("unmatched") == 0.0,
+            "{row:?}"
+        );
+        assert!(of("rms_event_error_s") < 1e-5, "{row:?}");
+        let [low, median, high] = ["ns_per_step_q1", "ns_per_step", "ns_per_step_q3"].map(of);
+        assert!(0.0 < low && low <= median && median <= high, "{row:?}");
+    }
+}
