@@ -27,7 +27,7 @@ for picture in frequency-f64 frequency-f32 tick-torque-f32; do
     echo "$image"
 done
 
-cargo run --profile dist --features emulator --quiet -- laws --quick --target --pictures --out target/figures/laws >target/figures/laws.txt
+cargo run --profile dist --features emulator --quiet -- laws --target --pictures --out target/figures/laws >target/figures/laws.txt
 for picture in model-errors numerical-errors grating-cycles; do
     cp "target/figures/laws/$picture.svg" "docs/images/laws-$picture.svg"
     echo "docs/images/laws-$picture.svg"
@@ -53,6 +53,40 @@ awk 'NR == FNR { if (/^The other symptoms/) which = "symptoms"
     target/figures/accuracy.txt docs/accuracy.md >target/figures/accuracy.md
 cp target/figures/accuracy.md docs/accuracy.md
 echo docs/accuracy.md
+
+# Costs on recorded knees, where the recordings stand beside the repository.
+if [ -d ../shared/data ]; then
+    points=
+    for knee in opencap_squat_100hz:7.9 opensim_walk_100hz:2.3 bmc_walk_150hz:1.1; do
+        name=${knee%:*}
+        for convention in frozen physical; do
+            folder=target/figures/$name-$convention
+            cat >"target/figures/$name.toml" <<SCENE
+version = 1
+title = "$name"
+duration_s = ${knee#*:}
+[motion]
+kind = "recording"
+file = "$PWD/../shared/data/$name.csv"
+time_column = "time_s"
+angle_column = "knee_flexion_deg"
+[solver]
+kind = "exact-events"
+step_s = 5e-5
+[effects.crepitus]
+convention = "$convention"
+SCENE
+            cargo run --profile dist --features emulator --quiet -- accuracy --scene "target/figures/$name.toml" \
+                --quick --force --out "$folder" >/dev/null
+            points="$points $folder/points.csv"
+        done
+    done
+    # shellcheck disable=SC2086
+    awk -F, -f docs/recorded-costs.awk $points >docs/generated/recorded-costs.md
+    echo docs/generated/recorded-costs.md
+else
+    echo "left out: docs/generated/recorded-costs.md, which needs the recordings" >&2
+fi
 
 cargo run --profile dist --features emulator --quiet -- stability --pictures --out target/figures/stability >/dev/null
 cp target/figures/stability/matrix.svg docs/images/stability-matrix.svg
