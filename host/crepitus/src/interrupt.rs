@@ -60,6 +60,7 @@ pub(crate) fn forget() {
 }
 
 /// Returns whether a stop was ever requested, also one that was carried out since.
+#[cfg(unix)]
 pub(crate) fn ever_requested() -> bool {
     requested() || WAS_CARRIED_OUT.load(Ordering::Relaxed)
 }
