@@ -80,7 +80,8 @@ function search() {
 async function send() {
   const changes = [...edits];
   if (!(await request("set", { changes }, text("drawer.applied", { count: changes.length })))) return;
-  edits.clear();
+  // What was typed meanwhile stays an edit.
+  for (const [id, value] of changes) if (edits.get(id) === value) edits.delete(id);
   updateDrawer();
 }
 
