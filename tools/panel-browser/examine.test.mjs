@@ -194,6 +194,27 @@ test("the knee on the device is named, and its card alone says so", async () => 
   }
 });
 
+test("a number that is typed while others are applied stays an edit", async () => {
+  const panel = await startPanel();
+  const page = await openControlling(panel.teacher);
+  await page.getByText("All parameters").click();
+  await page.getByLabel("Search parameters").fill("spasticity.threshold_deg");
+  const threshold = page.locator('[data-parameter="spasticity.threshold_deg"] input');
+  await threshold.fill("61");
+  const apply = page.locator("#apply-edits");
+  // No reply comes in between.
+  await threshold.evaluate((input) => {
+    document.querySelector("#apply-edits").click();
+    input.value = "62";
+    input.dispatchEvent(new Event("input"));
+  });
+  await page.locator('[data-parameter="spasticity.threshold_deg"]', { hasText: "not applied yet, now 61" }).waitFor();
+  await page.waitForTimeout(300);
+  await apply.click();
+  await apply.waitFor({ state: "hidden" });
+  assert.equal(await threshold.inputValue(), "62");
+});
+
 test("a knee is saved with a name alone, and a blind lesson takes it", async () => {
   const panel = await startPanel();
   const page = await openControlling(panel.teacher);
