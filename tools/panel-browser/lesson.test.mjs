@@ -35,7 +35,14 @@ async function examine(page) {
     if (!(await isOn())) {
       const clear = page.getByRole("button", { name: "Clear fault" });
       if (await clear.isVisible()) await clear.click();
-      await arm(page);
+      await arm(page).catch(async (error) => {
+        if (!/outside the range of motion/.test(error.message)) throw error;
+        // As the page says.
+        const move = await takeLeg(page);
+        await move((straight + bent) / 2, SLOW);
+        await page.mouse.up();
+        await arm(page);
+      });
     }
     const move = await takeLeg(page);
     await move(straight, SLOW);

@@ -179,7 +179,6 @@ fn cheapest(runner: &mut Runner, task: Task, out: &mut Delivery) -> f64 {
 
 /// Scores everyone once, then lets everyone take a turn in each round, there and back.
 pub fn hold(joint: &Joint, contestants: &mut [Contestant], rounds: usize, out: &mut Delivery) {
-    let work = Work::new(joint.parameters);
     struct Entry {
         who: usize,
         task: usize,
@@ -187,6 +186,8 @@ pub fn hold(joint: &Joint, contestants: &mut [Contestant], rounds: usize, out: &
         repeats: u32,
         times: Vec<crate::measure::Times>,
     }
+
+    let work = Work::new(joint.parameters);
     let mut entries = Vec::new();
     for (who, contestant) in contestants.iter_mut().enumerate() {
         for (task, &asked) in Task::ALL.iter().enumerate() {

@@ -36,6 +36,7 @@ pub struct Rows {
 
 /// The cost at a spacing of rows.
 #[derive(Clone, Copy, Serialize)]
+#[expect(clippy::struct_field_names, reason = "a column of the results")]
 pub struct Spacing {
     /// The spacing, s.
     pub spacing_s: f64,

@@ -27,7 +27,7 @@ impl Line {
     fn ratio(&self) -> Option<(f64, f64)> {
         let (_, peer) = self.peer.as_ref()?;
         let ratio = peer.median.cpu_s / self.ours_time.median.cpu_s;
-        Some((ratio, (peer.spread + self.ours_time.spread) / 2.0))
+        Some((ratio, f64::midpoint(peer.spread, self.ours_time.spread)))
     }
 }
 
