@@ -280,11 +280,9 @@ mod tests {
         assert_eq!(of("encoder"), s.encoder.values());
         assert_eq!(of("limits"), s.limits.values());
         assert_eq!(of("range"), s.range.values());
-        // What came later has later ids.
-        let (regulator, motor) = (s.current_loop.values(), s.motor.values());
         assert_eq!(
             of("motor"),
-            [&regulator[..5], &motor[..], &regulator[5..]].concat()
+            [s.current_loop.values().as_slice(), &s.motor.values()].concat()
         );
         for spec in effects::SPECS {
             assert_eq!(of(spec.name).first(), Some(&1.0), "{}", spec.name);

@@ -103,15 +103,13 @@ impl Device {
         py.detach(|| self.lock().is_none())
     }
 
-    /// Returns port, identities, status, faults, counters and times of the tasks (JSON).
+    /// Returns port, identities, status, faults and counters (JSON).
     fn info(&self, py: Python<'_>) -> PyResult<String> {
         self.request(py, |client| {
             let status = client.status()?;
             let counters = client.counters()?;
-            let times = client.times()?;
             let (port, handshake) = (client.port(), client.handshake());
-            let info = device_text::info_json(&port, handshake, &status, &counters, &times);
-            Ok(info.to_string())
+            Ok(device_text::info_json(&port, handshake, &status, &counters).to_string())
         })
     }
 

@@ -23,11 +23,6 @@ pub(super) const USES: &[(&str, Use)] = &[
         "arm --scene",
         Endless("arm --device sim --scene {} --for 1s"),
     ),
-    ("bring-up --out", Written),
-    (
-        "bring-up --scene",
-        Ends("bring-up --yes --device sim --scene {} --out {out}"),
-    ),
     ("calibrate --out", Written),
     (
         "calibrate --scene",
@@ -142,7 +137,6 @@ pub(super) const NO_FILES: &[&str] = &[
     "CONVENTION",
     "DEVICE",
     "EFFECT",
-    "FAULT",
     "FEEL",
     "FORMAT",
     "G",
@@ -183,5 +177,4 @@ pub(super) const NO_FILES: &[&str] = &[
     "DISORDER",
     "one|two",
     "COMMAND",
-    "ROW",
 ];

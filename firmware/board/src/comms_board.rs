@@ -6,8 +6,6 @@ use crate::enable_line::EnableLine;
 use crate::flash::ParameterSectors;
 use crate::identity::identity;
 use crate::link::{BUFFERS, DmaBuffer, Link};
-use crate::pins::Ports;
-use crate::pins::comms::Pins;
 use crate::start::{Start, start};
 use crate::ticks::Quarters;
 use crate::usb::{self, PACKET_WORDS, UsbBusType};
@@ -26,15 +24,13 @@ pub struct CommsBoard {
     pub identity: Identity,
     /// Result of the self-test.
     pub self_test: SelfTest,
-    /// Crystal as measured, Hz.
-    pub crystal_hz: u32,
-    /// Enable line.
+    /// PB0, read back on PB1.
     pub line: EnableLine,
-    /// Link to the drive.
+    /// PC6, PC7.
     pub link: Link,
     /// Checksums of what the link receives.
     pub crc_unit: CrcUnit,
-    /// USB.
+    /// PA11, PA12.
     pub bus: UsbBusAllocator<UsbBusType>,
     /// Sectors 2 and 3 of flash.
     pub log: ParameterLog<ParameterSectors>,
@@ -52,28 +48,24 @@ impl CommsBoard {
         packets: &'static mut [u32; PACKET_WORDS],
         buffers: [DmaBuffer; BUFFERS],
     ) -> Self {
-        let (mut rcc, crystal_hz) = clocks::start(chip.RCC, &chip.TIM11);
+        let mut rcc = clocks::start(chip.RCC);
         let start = start(&mut rcc, &chip.RNG);
-        let pins = Pins::of(Ports {
-            a: chip.GPIOA.split(&mut rcc),
-            b: chip.GPIOB.split(&mut rcc),
-            c: chip.GPIOC.split(&mut rcc),
-        });
-        let line = EnableLine::new(pins.line, pins.line_back);
-        let wires = (pins.link_sends, pins.link_receives);
+        let a = chip.GPIOA.split(&mut rcc);
+        let b = chip.GPIOB.split(&mut rcc);
+        let c = chip.GPIOC.split(&mut rcc);
+        let line = EnableLine::new(b.pb0, b.pb1);
         let blocks = (chip.OTG_FS_GLOBAL, chip.OTG_FS_DEVICE, chip.OTG_FS_PWRCLK);
         let option_bytes = chip.FLASH.optcr().read().bits();
-        let (identity, self_test) = identity(Role::Comms, &start, option_bytes, crystal_hz);
+        let (identity, self_test) = identity(Role::Comms, &start, option_bytes);
         Self {
             start,
             identity,
             self_test,
-            crystal_hz,
             line,
             log: ParameterLog::open(ParameterSectors::new(chip.FLASH)),
-            link: Link::new(&chip.USART6, chip.DMA2, wires, buffers, &mut rcc),
+            link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), buffers, &mut rcc),
             crc_unit: CrcUnit::new(chip.CRC, &mut rcc),
-            bus: usb::bus(blocks, pins.usb_minus, pins.usb_plus, packets, &rcc),
+            bus: usb::bus(blocks, a.pa11, a.pa12, packets, &rcc),
             quarters: Quarters::start(chip.TIM2, &mut rcc),
             watchdog: chip.IWDG,
         }

@@ -13,7 +13,7 @@
 //! | shared | between | locked for |
 //! |---|---|---|
 //! | `command`: safety, motor, blocks, its plan | 4, 1, 0 | a status, two samples; storing the plan |
-//! | `exchange`, `task_clock` | 5, 4, 3, 0; all | never: atomic |
+//! | `exchange` | 5, 4, 3, 0 | never: atomic |
 //! | `rendering_plan` | 3, 0 | storing it; applying it |
 //! | `commits` | 1, 0 | handing over a commit |
 //!
@@ -41,8 +41,6 @@ mod app {
     use board::encoder::Encoder;
     use board::link::{BUFFERS, DmaBuffer, EMPTY_BUFFER, Link};
     use board::mpu::OutputAccess;
-    use board::stack_mark::{self, StackMark};
-    use board::task_clock::TaskClock;
     use board::ticks::{self, BeginOfTick, FreeClock, MiddleOfTick};
     use board::watchdog::{TaskCheckins, Watchdog};
     use core::sync::atomic::{AtomicBool, Ordering};
@@ -57,14 +55,10 @@ mod app {
     use crepitus_device::drive::motor;
     use crepitus_device::drive::prepare::{Preparation, RenderingPlan};
     use crepitus_device::drive::rendering::Rendering;
-    use crepitus_device::self_test::SelfTest;
-    use crepitus_device::task_times::{Reports, SamplingInstants};
-    use crepitus_protocol::counters::DriveCounter;
+    use crepitus_protocol::Fault;
     use crepitus_protocol::crash::Tick;
     use crepitus_protocol::frame::{DELIMITER, FrameBuffer};
     use crepitus_protocol::pieces::Reassembly;
-    use crepitus_protocol::task_times::TaskTimes;
-    use crepitus_protocol::{Fault, TICKS_PER_S};
     use stm32f4xx_hal::pac::Interrupt;
 
     /// Starts `link`, as the end of a sent frame does.
@@ -73,8 +67,7 @@ mod app {
     /// Starts `render_torque`: the vector of a timer that stays off.
     const RENDER: Interrupt = Interrupt::TIM7;
 
-    /// Tasks that check in with the watchdog, and whose cycles are counted: in the order of the protocol's
-    /// `DRIVE_TASKS`.
+    /// Tasks that check in with the watchdog.
     const SAMPLED: usize = 0;
     const COMMANDED: usize = 1;
     const RENDERED: usize = 2;
@@ -98,8 +91,6 @@ mod app {
         is_link_due: AtomicBool,
         counters: Counters,
         checkins: TaskCheckins<TASKS>,
-        task_clock: TaskClock<TASKS>,
-        instants: SamplingInstants,
     }
 
     #[local]
@@ -121,12 +112,10 @@ mod app {
         link_task: LinkTask<DmaBuffer>,
         preparation: Preparation,
         watchdog: Watchdog,
-        stack: StackMark,
     }
 
     #[init(local = [buffers: [FrameBuffer; BUFFERS] = [EMPTY_BUFFER; BUFFERS]])]
-    fn init(mut cx: init::Context) -> (Shared, Local) {
-        let stack = StackMark::paint();
+    fn init(cx: init::Context) -> (Shared, Local) {
         let board = DriveBoard::new(cx.device, cx.local.buffers.each_mut());
         let start = board.start;
         defmt::info!(
@@ -143,9 +132,6 @@ mod app {
             start: start.number,
             ..Boot::default()
         };
-        if board.self_test == SelfTest::CrystalWrong {
-            defmt::error!("drive: a crystal of {=u32} Hz", board.crystal_hz);
-        }
         let Ok((preparation, first)) = Preparation::new() else {
             panic!("the default parameters are invalid");
         };
@@ -161,8 +147,6 @@ mod app {
             is_link_due: AtomicBool::new(false),
             counters: Counters::new(),
             checkins: TaskCheckins::new(),
-            task_clock: TaskClock::start(&mut cx.core.DCB, &mut cx.core.DWT),
-            instants: SamplingInstants::new(),
         };
         let mut local = Local {
             middle: board.middle,
@@ -182,7 +166,6 @@ mod app {
             link_task: LinkTask::new(boot.identity, boot.start),
             preparation,
             watchdog: Watchdog::start(board.watchdog, IDLE_TIMEOUT_RUNS),
-            stack,
         };
         // Last, so that the first tick is like the others.
         local
@@ -194,18 +177,15 @@ mod app {
     #[task(
         binds = TIM4, priority = 5,
         local = [begin, encoder],
-        shared = [&exchange, &is_running, &checkins, &task_clock, &instants]
+        shared = [&exchange, &is_running, &checkins]
     )]
     fn sample_encoder(cx: sample_encoder::Context) {
-        let run = cx.shared.task_clock.begin_highest();
         cx.local.begin.acknowledge();
         cx.shared.checkins.check_in(SAMPLED);
         if cx.shared.is_running.load(Ordering::Relaxed) {
             cx.shared.exchange.sample(cx.local.encoder.count());
-            cx.shared.instants.add(cx.local.begin.clocks());
             rtic::pend(RENDER);
         }
-        cx.shared.task_clock.end_highest(SAMPLED, run);
     }
 
     #[task(
@@ -214,12 +194,9 @@ mod app {
             middle, converters, clock, line, comms_line, bridge, coil, output_access, black_box,
             middles: u8 = 0,
         ],
-        shared = [
-            command, &exchange, &is_running, &is_link_due, &counters, &checkins, &task_clock,
-        ]
+        shared = [command, &exchange, &is_running, &is_link_due, &counters, &checkins]
     )]
     fn command_motor(mut cx: command_motor::Context) {
-        let run = cx.shared.task_clock.begin();
         let part = cx.local;
         part.middle.acknowledge();
         cx.shared.checkins.check_in(COMMANDED);
@@ -262,16 +239,14 @@ mod app {
         });
         cx.shared.is_link_due.store(true, Ordering::Relaxed);
         rtic::pend(LINK);
-        cx.shared.task_clock.end(COMMANDED, run);
     }
 
     #[task(
         binds = TIM7, priority = 3,
         local = [rendering],
-        shared = [rendering_plan, &exchange, &checkins, &task_clock]
+        shared = [rendering_plan, &exchange, &checkins]
     )]
     fn render_torque(mut cx: render_torque::Context) {
-        let run = cx.shared.task_clock.begin();
         cx.shared.checkins.check_in(RENDERED);
         let (rendering, exchange) = (cx.local.rendering, cx.shared.exchange);
         if rendering.tick(exchange) {
@@ -279,7 +254,6 @@ mod app {
                 .rendering_plan
                 .lock(|plan| rendering.take_over(plan.as_ref(), exchange));
         }
-        cx.shared.task_clock.end(RENDERED, run);
     }
 
     #[task(
@@ -289,15 +263,14 @@ mod app {
             has_received: bool = false,
             has_ended: bool = false,
         ],
-        shared = [command, commits, &is_link_due, &counters, &checkins, &task_clock]
+        shared = [command, commits, &is_link_due, &counters, &checkins]
     )]
     fn link(cx: link::Context) {
-        let run = cx.shared.task_clock.begin();
         let (link, task) = (cx.local.link, cx.local.link_task);
         link.acknowledge();
         // The end of a sent frame is no tick.
         if !cx.shared.is_link_due.swap(false, Ordering::Relaxed) {
-            return cx.shared.task_clock.end(LINKED, run);
+            return;
         }
         cx.shared.checkins.check_in(LINKED);
         cx.local.watchdog.feed(cx.shared.checkins);
@@ -329,14 +302,12 @@ mod app {
         if task.take_reboot() {
             board::stop::reboot();
         }
-        cx.shared.task_clock.end(LINKED, run);
     }
 
     #[idle(
-        local = [preparation, stack, reports: Reports = Reports::new(TICKS_PER_S)],
+        local = [preparation],
         shared = [
-            command, commits, rendering_plan, &exchange, &counters, &checkins, &task_clock,
-            &instants,
+            command, commits, rendering_plan, &exchange, &counters, &checkins,
         ]
     )]
     fn idle(cx: idle::Context) -> ! {
@@ -363,19 +334,6 @@ mod app {
                 reported = Some(now);
                 let (state, fault) = now;
                 defmt::info!("{=str}, fault {=u8}", state.name(), fault);
-            }
-            cx.local.stack.advance();
-            let tasks = cx.shared.task_clock.tasks();
-            if let Some(tasks) = cx.local.reports.poll(tasks, COMMANDED) {
-                let (earliest_sample, latest_sample) = cx.shared.instants.span();
-                counters.times().offer(&TaskTimes {
-                    tasks,
-                    earliest_sample,
-                    latest_sample,
-                    late_ticks: counters.get(DriveCounter::LateTicks),
-                    stack_used: cx.local.stack.used(),
-                    stack_bytes: stack_mark::BYTES,
-                });
             }
             cx.shared.checkins.idle_checks_in();
             board::sleep();

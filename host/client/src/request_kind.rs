@@ -30,7 +30,6 @@ crepitus_protocol::named! {
         Unsubscribe => "unsubscribe",
         ReadCrash => "read-crash",
         PlayChirp => "play-chirp",
-        Times => "times",
     }
 }
 
@@ -66,7 +65,6 @@ impl RequestKind {
             Operation::Unsubscribe => Self::Unsubscribe,
             Operation::ReadCrash { .. } => Self::ReadCrash,
             Operation::PlayChirp(_) => Self::PlayChirp,
-            Operation::Times => Self::Times,
         }
     }
 
@@ -98,8 +96,7 @@ impl RequestKind {
             | Self::Parameters
             | Self::Disarm
             | Self::Subscribe
-            | Self::Unsubscribe
-            | Self::Times => false,
+            | Self::Unsubscribe => false,
         }
     }
 

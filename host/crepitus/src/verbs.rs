@@ -4,7 +4,6 @@
 
 pub(crate) mod accuracy;
 pub(crate) mod arm;
-pub(crate) mod bring_up;
 pub(crate) mod calibrate;
 pub(crate) mod clear_fault;
 pub(crate) mod completions;
@@ -67,7 +66,6 @@ verbs! {
     Info: info,
     Doctor: doctor,
     Params: params,
-    BringUp: bring_up,
     Calibrate: calibrate,
     Identify: identify,
     IdentifyActuator: identify_actuator,

@@ -157,7 +157,7 @@ class Device:
         return self._device.armed
 
     def info(self) -> Info:
-        """Identities, status, faults, counters, times: as ``crepitus info --json``."""
+        """Port, identities, status, faults and counters: what ``crepitus info --json`` prints."""
         info: Info = json.loads(self._device.info())
         return info
 

@@ -62,8 +62,6 @@ pub struct Step {
     /// Cycles of them in which the core waited for flash or a register; 0 unless
     /// they are modelled.
     pub waits: u32,
-    /// True if the instruction loads the core's cycle counter.
-    pub counts: bool,
     /// Time at which it began.
     pub at: Time,
 }

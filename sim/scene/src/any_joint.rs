@@ -8,14 +8,7 @@ use crepitus_model::{
 };
 
 /// A joint whose rung was chosen while the program runs.
-pub struct AnyJoint<F> {
-    joint: Box<dyn Erased<F> + Send>,
-    /// Phase and torque, which every step is asked for: they come with it.
-    output: Output<F>,
-}
-
-/// Phase of a joint and its torque, N·m.
-type Output<F> = (Phase, F);
+pub struct AnyJoint<F>(Box<dyn Erased<F> + Send>);
 
 impl<F: Precise> AnyJoint<F> {
     /// The joint that `settings` and `solver` describe; see [`with_joint`].
@@ -74,46 +67,45 @@ impl<F: Real> JointVisitor<F> for Boxed {
     type Output = AnyJoint<F>;
 
     fn visit<J: StickSlip<F>>(self, joint: J) -> AnyJoint<F> {
-        AnyJoint {
-            output: output(&joint),
-            joint: Box::new(joint),
-        }
+        AnyJoint(Box::new(joint))
     }
 }
 
 /// [`StickSlip`] without type parameters.
 trait Erased<F: Real> {
-    fn step(&mut self, shaft: &ShaftStep<F>, on_event: &mut dyn FnMut(Event<F>)) -> Output<F>;
-    fn restart(&mut self, torque_nm: F, omega_rad_s: F) -> Output<F>;
-    fn change_step(&mut self, coefficients: StepCoefficients<F>) -> Output<F>;
+    fn step(&mut self, shaft: &ShaftStep<F>, on_event: &mut dyn FnMut(Event<F>));
+    fn restart(&mut self, torque_nm: F, omega_rad_s: F);
+    fn change_step(&mut self, coefficients: StepCoefficients<F>);
     fn coefficients(&self) -> &StepCoefficients<F>;
+    fn phase(&self) -> Phase;
+    fn torque_nm(&self) -> F;
     fn theta_rad(&self) -> F;
     fn theta_dot_rad_s(&self) -> F;
 }
 
-#[inline]
-fn output<F: Real, J: StickSlip<F>>(joint: &J) -> Output<F> {
-    (joint.phase(), joint.torque_nm())
-}
-
 impl<F: Real, J: StickSlip<F>> Erased<F> for J {
-    fn step(&mut self, shaft: &ShaftStep<F>, on_event: &mut dyn FnMut(Event<F>)) -> Output<F> {
+    fn step(&mut self, shaft: &ShaftStep<F>, on_event: &mut dyn FnMut(Event<F>)) {
         StickSlip::step(self, shaft, on_event);
-        output(self)
     }
 
-    fn restart(&mut self, torque_nm: F, omega_rad_s: F) -> Output<F> {
+    fn restart(&mut self, torque_nm: F, omega_rad_s: F) {
         StickSlip::restart(self, torque_nm, omega_rad_s);
-        output(self)
     }
 
-    fn change_step(&mut self, coefficients: StepCoefficients<F>) -> Output<F> {
+    fn change_step(&mut self, coefficients: StepCoefficients<F>) {
         StickSlip::change_step(self, coefficients);
-        output(self)
     }
 
     fn coefficients(&self) -> &StepCoefficients<F> {
         StickSlip::coefficients(self)
+    }
+
+    fn phase(&self) -> Phase {
+        StickSlip::phase(self)
+    }
+
+    fn torque_nm(&self) -> F {
+        StickSlip::torque_nm(self)
     }
 
     fn theta_rad(&self) -> F {
@@ -126,38 +118,35 @@ impl<F: Real, J: StickSlip<F>> Erased<F> for J {
 }
 
 impl<F: Real> StickSlip<F> for AnyJoint<F> {
-    #[inline]
     fn step(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
-        self.output = self.joint.step(shaft, &mut on_event);
+        self.0.step(shaft, &mut on_event);
     }
 
     fn restart(&mut self, torque_nm: F, omega_rad_s: F) {
-        self.output = self.joint.restart(torque_nm, omega_rad_s);
+        self.0.restart(torque_nm, omega_rad_s);
     }
 
     fn change_step(&mut self, coefficients: StepCoefficients<F>) {
-        self.output = self.joint.change_step(coefficients);
+        self.0.change_step(coefficients);
     }
 
     fn coefficients(&self) -> &StepCoefficients<F> {
-        self.joint.coefficients()
+        self.0.coefficients()
     }
 
-    #[inline]
     fn phase(&self) -> Phase {
-        self.output.0
+        self.0.phase()
     }
 
-    #[inline]
     fn torque_nm(&self) -> F {
-        self.output.1
+        self.0.torque_nm()
     }
 
     fn theta_rad(&self) -> F {
-        self.joint.theta_rad()
+        self.0.theta_rad()
     }
 
     fn theta_dot_rad_s(&self) -> F {
-        self.joint.theta_dot_rad_s()
+        self.0.theta_dot_rad_s()
     }
 }

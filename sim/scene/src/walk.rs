@@ -2,9 +2,8 @@
 
 use crepitus_model::Real;
 use crepitus_plant::actuator::Actuator;
-use crepitus_plant::boundary::{Boundary, MotionStep};
-use crepitus_plant::chain::{Body, Chain};
-use crepitus_plant::piece::Parabola;
+use crepitus_plant::boundary::MotionStep;
+use crepitus_plant::chain::Body;
 use crepitus_plant::{Motion, Piece, Plant};
 use std::borrow::Borrow;
 
@@ -12,8 +11,6 @@ use std::borrow::Borrow;
 pub struct Walk<M> {
     motion: M,
     piece: Piece,
-    /// The piece, where its velocity is linear.
-    parabola: Option<Parabola>,
     clock: Clock,
     n: u64,
     time_s: f64,
@@ -59,7 +56,6 @@ impl<M: Borrow<Motion>> Walk<M> {
         let now = body(&piece, 0.0);
         Self {
             motion,
-            parabola: piece.parabola(),
             piece,
             clock: Clock::new(step_s),
             n: 0,
@@ -81,7 +77,7 @@ impl<M: Borrow<Motion>> Walk<M> {
     /// Goes on with another motion, from its beginning. It begins where this one is, with the same
     /// velocity: both sides have that to the bit.
     pub fn turn_to(&mut self, motion: M) {
-        self.enter(motion.borrow().piece(0.0));
+        self.piece = motion.borrow().piece(0.0);
         self.motion = motion;
         (self.n, self.time_s) = (0, 0.0);
     }
@@ -111,30 +107,11 @@ impl<M: Borrow<Motion>> Walk<M> {
         self.time_s = self.clock.time_s(self.n);
         let from = self.now;
         while self.piece.end_s < self.time_s {
-            self.enter(self.motion.borrow().piece(self.piece.end_s));
+            self.piece = self.motion.borrow().piece(self.piece.end_s);
         }
-        let to = self.body_now();
+        let to = body(&self.piece, self.time_s);
         self.arrive(to);
         (from, to)
-    }
-
-    #[inline]
-    fn enter(&mut self, piece: Piece) {
-        self.parabola = piece.parabola();
-        self.piece = piece;
-    }
-
-    /// The motion at the time reached.
-    #[inline]
-    fn body_now(&self) -> Body {
-        let (angle_rad, omega_rad_s) = match &self.parabola {
-            Some(parabola) => parabola.angle_and_velocity(self.time_s),
-            None => self.piece.angle_and_velocity(self.time_s),
-        };
-        Body {
-            angle_rad,
-            omega_rad_s,
-        }
     }
 
     /// The end of a step within its piece, or at the end of that.
@@ -142,27 +119,17 @@ impl<M: Borrow<Motion>> Walk<M> {
     fn arrive(&mut self, to: Body) {
         self.now = to;
         if self.piece.end_s == self.time_s {
-            self.begin_piece();
-        }
-    }
-
-    /// Enters the piece that begins at the time reached.
-    #[cold]
-    fn begin_piece(&mut self) {
-        self.enter(self.motion.borrow().piece(self.time_s));
-        // Without a jump both sides are one velocity, to the bit.
-        if self.piece.jump {
-            self.now = self.body_now();
+            self.piece = self.motion.borrow().piece(self.time_s);
+            // Without a jump both sides are one velocity, to the bit.
+            if self.piece.jump {
+                self.now = body(&self.piece, self.time_s);
+            }
         }
     }
 
     /// Makes a [`step`](Self::step); `None` if the motion breaks within the step, which
     /// [`parts`](Self::parts) then has the parts of.
-    #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "a call of the loop, whose arguments and results would pass through memory"
-    )]
+    #[inline]
     pub fn step_or_parts(&mut self) -> Option<(Body, Body)> {
         self.n += 1;
         self.time_s = self.clock.time_s(self.n);
@@ -170,7 +137,7 @@ impl<M: Borrow<Motion>> Walk<M> {
             return self.split();
         }
         let from = self.now;
-        let to = self.body_now();
+        let to = body(&self.piece, self.time_s);
         self.arrive(to);
         Some((from, to))
     }
@@ -211,7 +178,7 @@ impl<M: Borrow<Motion>> Walk<M> {
                 from = if next.jump { body(&next, at_s) } else { to };
                 part_s = at_s;
             }
-            self.enter(next);
+            self.piece = next;
         }
         let mut to = body(&self.piece, end_s);
         self.arrive(to);
@@ -230,10 +197,7 @@ impl<M: Borrow<Motion>> Walk<M> {
     /// One step of the motion and of a plant that is held by it; returns the shaft at its
     /// end, just inside it: before its velocity jumps, if it does.
     #[inline]
-    pub fn advance<A: Actuator, C: Chain, B: Boundary>(
-        &mut self,
-        plant: &mut Plant<A, C, B>,
-    ) -> Body {
+    pub fn advance<A: Actuator>(&mut self, plant: &mut Plant<A>) -> Body {
         let (from, to) = self.step();
         plant.advance(&MotionStep {
             length_s: self.clock.step_s,
@@ -249,14 +213,10 @@ impl<M: Borrow<Motion>> Walk<M> {
 
     /// Makes an [`advance`](Self::advance), split where the motion breaks; adds what the
     /// plant's shaft made of each break within the step, or as it began, to `cuts`.
-    #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "a call of the loop, whose arguments and results would pass through memory"
-    )]
-    pub fn advance_in_parts<A: Actuator, C: Chain, B: Boundary>(
+    #[inline]
+    pub fn advance_in_parts<A: Actuator>(
         &mut self,
-        plant: &mut Plant<A, C, B>,
+        plant: &mut Plant<A>,
         cuts: &mut Vec<Cut>,
     ) -> Body {
         let (start_s, before) = (self.time_s, self.now);
@@ -283,9 +243,9 @@ impl<M: Borrow<Motion>> Walk<M> {
 
     /// Advances `plant` through the parts of the step that began at this time, with this motion.
     #[cold]
-    fn advance_through_parts<A: Actuator, C: Chain, B: Boundary>(
+    fn advance_through_parts<A: Actuator>(
         &self,
-        plant: &mut Plant<A, C, B>,
+        plant: &mut Plant<A>,
         (start_s, before): (f64, Body),
         cuts: &mut Vec<Cut>,
     ) -> Body {
@@ -307,11 +267,7 @@ impl<M: Borrow<Motion>> Walk<M> {
 }
 
 /// Takes a plant over a break of its motion, which is `last` before it and `next` after.
-fn cut<A: Actuator, C: Chain, B: Boundary>(
-    plant: &mut Plant<A, C, B>,
-    time_s: f64,
-    (last, next): (Body, Body),
-) -> Cut {
+fn cut<A: Actuator>(plant: &mut Plant<A>, time_s: f64, (last, next): (Body, Body)) -> Cut {
     let before = plant.shaft();
     if next.omega_rad_s != last.omega_rad_s {
         plant.jump(next.omega_rad_s);

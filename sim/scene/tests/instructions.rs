@@ -1,17 +1,15 @@
 //! Cost of effects in instructions, counted by valgrind: an effect that a
-//! scene leaves out executes nothing, the costs of those that it lists add
-//! up to that of the scene, and standard scenes cost what they did.
+//! scene leaves out executes nothing, and the costs of those that it lists add
+//! up to that of the scene.
 //!
-//! Counts are those of this build's profile; only their ratios mean something. The table of the
-//! standard scenes is that of the gate's build, and made again with
-//! `CARGO_INCREMENTAL=0 CREPITUS_BLESS=1 cargo test -p crepitus-scene --test instructions`.
+//! Counts are those of this build's profile; only their ratios mean something.
 //! Without valgrind nothing is counted and the test reports it, unless
 //! `CREPITUS_NEEDS_VALGRIND` is set.
 
 use crepitus_plant::effect::Effect;
 use crepitus_plant::effects::EFFECTS;
 use crepitus_scene::run::Blind;
-use crepitus_scene::{Overrides, Scene, instructions, run};
+use crepitus_scene::{Overrides, Scene, run};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -39,55 +37,9 @@ fn scene_text(effects: &[&Effect], steps: u32) -> String {
     text
 }
 
-/// Change of a count from which on it is another, as a share: the next compiler's is.
-const TOLERANCE: f64 = 0.03;
-
-#[test]
-fn standard_scenes_cost_what_they_did() {
-    if !valgrind() {
-        return;
-    }
-    if cfg!(not(debug_assertions)) || option_env!("CARGO_INCREMENTAL") != Some("0") {
-        eprintln!("left out: the table is of the gate's build, with CARGO_INCREMENTAL=0");
-        return;
-    }
-    let scenes = instructions::standard().unwrap();
-    let counts = instructions::per_step(
-        &std::env::current_exe().unwrap(),
-        ["--exact", "counted_process", "--test-threads=1"],
-        (scenes.len(), STEPS),
-    )
-    .unwrap();
-    let rows = scenes.iter().zip(&counts);
-    let mut table = String::from("scene,instructions_per_step\n");
-    table.extend(rows.map(|((name, _), count)| format!("{name},{count:.0}\n")));
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/instructions.csv");
-    if std::env::var_os("CREPITUS_BLESS").is_some() {
-        std::fs::write(&file, &table).unwrap();
-        return;
-    }
-    let known = std::fs::read_to_string(&file).unwrap();
-    assert_eq!(known.lines().count(), table.lines().count());
-    let number = |line: &str| -> f64 { line.rsplit(',').next().unwrap().parse().unwrap() };
-    for (was, is) in known.lines().zip(table.lines()).skip(1) {
-        let change = number(is) / number(was) - 1.0;
-        assert!(
-            change.abs() <= TOLERANCE,
-            "{is}, which was {was}: {:+.1} %; if that is meant, make the table again",
-            100.0 * change
-        );
-    }
-}
-
-/// The measured process: does nothing unless it is given a scene, or counted.
+/// The measured process: does nothing unless it is given a scene.
 #[test]
 fn counted_process() {
-    if instructions::is_counted() {
-        let standard = instructions::standard().unwrap();
-        let scenes: Vec<_> = standard.into_iter().map(|(_, scene)| scene).collect();
-        instructions::run_counted(&scenes, STEPS);
-        return;
-    }
     let Some(file) = std::env::var_os(SCENE_VARIABLE) else {
         return;
     };

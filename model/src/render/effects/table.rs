@@ -21,9 +21,6 @@ macro_rules! effects {
             <$symptom::$s_law<f64> as Law>::WORDS,
         )),*];
 
-        /// A bit for each symptom.
-        const SYMPTOM_BITS: u32 = $(bit::<$symptom::$s_law<f64>>())|*;
-
         impl<F: Real> Effects<F> {
             /// Goes on in ticks of another length, see [`Law::retime`]: the symptoms alone, what
             /// is added to them knows whole ticks only.
@@ -100,11 +97,9 @@ macro_rules! effects {
             $(#[doc = concat!("Of `", stringify!($effect), "`.")] pub $effect: F,)*
         }
 
-        /// The laws alone, around a bare solver. A tick steps through those that are on.
+        /// The laws alone, around a bare solver.
         #[derive(Clone, Debug, PartialEq)]
         pub struct Effects<F: Real> {
-            /// A bit for each that was on when it was made, at its place in the table.
-            on: u32,
             $(#[doc = concat!("`", stringify!($effect), "`.")] pub $effect: Option<$effect::$law<F>>,)*
             /// Tank from which symptoms that are no springs are paid.
             pub tank: Tank<F>,
@@ -162,10 +157,7 @@ macro_rules! effects {
             /// [`SettingsError`] if a setting or the tick is out of range.
             pub fn laws<F: Real>(&self, timing: &Timing) -> Result<Effects<F>, SettingsError> {
                 let made = self.changes_from_none::<F>(timing)?;
-                let bits = [$((self.$effect.is_some(), const { bit::<$effect::$law<f64>>() })),*];
-                let are_on = bits.into_iter().filter(|(is_on, _)| *is_on);
                 Ok(Effects {
-                    on: are_on.fold(0, |on, (_, bit)| on | bit),
                     $($effect: made.$effect.flatten().map(<$effect::$law<F> as DeviceEffect<F>>::new),)*
                     tank: tank(timing),
                     scale: made.scale,
@@ -237,8 +229,7 @@ macro_rules! effects {
                 })*
             }
 
-            // Always: what it tells the laws then stays in registers.
-            #[inline(always)]
+            #[inline]
             fn tick(
                 &mut self,
                 seen: &ShaftEstimate<F>,
@@ -246,46 +237,16 @@ macro_rules! effects {
                 shown: &mut Shown<F>,
                 observe: &mut impl Observe<F>,
             ) {
-                if self.on == 0 {
-                    return;
-                }
-                let has_symptoms = self.on & SYMPTOM_BITS != 0;
                 let paid_share = self.tank.open(input.travel_rad().unwrap_or(F::ZERO));
-                let travel = has_symptoms
-                    .then(|| Travel::plausible(input, &seen.place, &self.scale))
-                    .flatten();
+                let travel = Travel::plausible(input, &seen.place, &self.scale);
                 let tick = Tick::of(seen, input, travel.as_ref(), paid_share);
-                let mut left = self.on;
-                while left != 0 {
-                    self.act(left.trailing_zeros(), &tick, shown, observe);
-                    left &= left.wrapping_sub(1);
-                }
-                if has_symptoms {
-                    self.tank.close(shown.active_nm);
-                }
-            }
-        }
-
-        impl<F: Real> Effects<F> {
-            /// Adds what the effect at a place of the table does: one jump, whatever the table's
-            /// length.
-            #[inline(always)]
-            fn act<O: Observe<F>>(
-                &mut self,
-                place: u32,
-                tick: &Tick<'_, F>,
-                shown: &mut Shown<F>,
-                observe: &mut O,
-            ) {
-                $(if place == const { bit::<$effect::$law<f64>>().trailing_zeros() } {
-                    if let Some(law) = &mut self.$effect {
-                        let added = law.added(tick, shown, observe);
-                        give(law.target(), added, shown);
-                        shown.added.$effect = added;
-                        note(Some(law), added, shown);
-                    }
-                    return;
+                $(if let Some(law) = &mut self.$effect {
+                    let added = law.added(&tick, shown, observe);
+                    give(law.target(), added, shown);
+                    shown.added.$effect = added;
+                    note(Some(law), added, shown);
                 })*
+                self.tank.close(shown.active_nm);
             }
         }
 

@@ -2,7 +2,6 @@
 //! registers as one would.
 
 mod bench;
-mod dma;
 mod flash;
 mod otg;
 mod usart;

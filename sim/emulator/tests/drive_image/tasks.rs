@@ -18,10 +18,10 @@ const TICK_UNITS: u64 = 16_800;
 
 /// Limits of a run with the modelled flash, cycles: about 3 % above what was
 /// measured, for `link` while a commit arrives.
-const SAMPLE_CYCLES: u64 = 182;
-const COMMAND_CYCLES: u64 = 2_215;
-const RENDER_CYCLES: u64 = 1_375;
-const LINK_CYCLES: u64 = 1_850;
+const SAMPLE_CYCLES: u64 = 105;
+const COMMAND_CYCLES: u64 = 2_100;
+const RENDER_CYCLES: u64 = 1_275;
+const LINK_CYCLES: u64 = 1_750;
 
 /// Ticks that are watched.
 const TICKS: u64 = 1_000;

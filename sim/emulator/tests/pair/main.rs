@@ -14,7 +14,5 @@ mod replay;
 mod same;
 mod session;
 mod speed;
-mod starts;
-mod times;
 mod usb;
 mod usbip;

@@ -33,10 +33,8 @@
 //!
 //! A step uses the torque's mean over its way by the first three terms about
 //! its start, the third with the velocity there: what a step gets wrong in
-//! energy is of the fourth order of its length. Sine, cosine and exponentials are computed at an
-//! anchor, and near it the torque is a series about that.
+//! energy is of the fourth order of its length.
 
-mod anchored;
 mod passive;
 
 pub use passive::Passive;
@@ -45,7 +43,6 @@ use crate::chain::{Body, Push, Step, Weight};
 use crate::effect::{Effect, Given, Part, numbers, parameters};
 use crate::energy_balance::{Account, EnergyBalance};
 use crate::load::{Load, Loaded};
-use anchored::{Anchored, Series};
 use crepitus_model::parameters::Choice;
 
 /// The effect.
@@ -82,14 +79,19 @@ pub const EFFECT: Effect = Effect {
             weight_nm: mass_kg * STANDARD_GRAVITY * 0.606 * shank_m,
             turned_rad: posture(given.choices[0]).0.to_radians(),
         };
-        let inertia_kg_m2 = mass_kg * radius_m * radius_m;
+        let limb = Limb {
+            inertia_kg_m2: mass_kg * radius_m * radius_m,
+            damping,
+            torque: pendulum,
+            lost_j: 0.0,
+            outside: false,
+        };
         match given.choices[1] {
             0 => {
                 let passive = Passive::for_hip_deg(posture(given.choices[0]).1);
-                let torque = (pendulum, passive);
-                Loaded::on(left, Limb::new(inertia_kg_m2, damping, torque))
+                Loaded::on(left, limb.and(passive))
             }
-            _ => Loaded::on(left, Limb::new(inertia_kg_m2, damping, pendulum)),
+            _ => Loaded::on(left, limb),
         }
     }),
 };
@@ -118,8 +120,6 @@ fn posture(choice: u8) -> (f64, f64) {
 trait AngleTorque: Copy + Send + 'static {
     /// Torque, N·m, its slope, N·m/rad, and its bend, N·m/rad².
     fn expand(&self, angle_rad: f64) -> [f64; 3];
-    /// The torque's series about an angle within its range.
-    fn series(&self, angle_rad: f64) -> Series;
     /// The energy that it stores, J.
     fn energy(&self, angle_rad: f64, balance: &mut EnergyBalance);
     /// The angles that it is known for, rad.
@@ -141,15 +141,6 @@ impl AngleTorque for Pendulum {
         [torque, slope, -torque]
     }
 
-    fn series(&self, angle_rad: f64) -> Series {
-        let (sin, cos) = (angle_rad + self.turned_rad).sin_cos();
-        let mut share = self.weight_nm;
-        std::array::from_fn(|k| {
-            let derivative = [cos, -sin, -cos, sin][k % 4];
-            anchored::term(k, &mut share, 1.0) * derivative
-        })
-    }
-
     fn energy(&self, angle_rad: f64, balance: &mut EnergyBalance) {
         let height_j = -self.weight_nm * (angle_rad + self.turned_rad).sin();
         balance.add(NAME, "weight", Account::Stored, height_j);
@@ -167,11 +158,6 @@ impl<A: AngleTorque, B: AngleTorque> AngleTorque for (A, B) {
         [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
     }
 
-    fn series(&self, angle_rad: f64) -> Series {
-        let (a, b) = (self.0.series(angle_rad), self.1.series(angle_rad));
-        std::array::from_fn(|k| a[k] + b[k])
-    }
-
     fn energy(&self, angle_rad: f64, balance: &mut EnergyBalance) {
         self.0.energy(angle_rad, balance);
         self.1.energy(angle_rad, balance);
@@ -187,20 +173,21 @@ impl<A: AngleTorque, B: AngleTorque> AngleTorque for (A, B) {
 struct Limb<T> {
     inertia_kg_m2: f64,
     damping: f64,
-    torque: Anchored<T>,
+    torque: T,
     lost_j: f64,
     /// The knee has left the range of the published data.
     outside: bool,
 }
 
-impl<T: AngleTorque> Limb<T> {
-    fn new(inertia_kg_m2: f64, damping: f64, torque: T) -> Self {
-        Self {
-            inertia_kg_m2,
-            damping,
-            torque: Anchored::new(torque),
-            lost_j: 0.0,
-            outside: false,
+impl<T> Limb<T> {
+    /// Returns the limb with a further torque.
+    fn and<U>(self, torque: U) -> Limb<(T, U)> {
+        Limb {
+            inertia_kg_m2: self.inertia_kg_m2,
+            damping: self.damping,
+            torque: (self.torque, torque),
+            lost_j: self.lost_j,
+            outside: self.outside,
         }
     }
 }
@@ -230,12 +217,12 @@ impl<T: AngleTorque> Load for Limb<T> {
     }
 
     fn weight(&self) -> Option<Weight> {
-        let torque = Anchored::new(*self.torque.of());
+        let torque = self.torque;
         Some(Box::new(move |angle| torque.expand(angle)[0]))
     }
 
     fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
-        self.torque.of().energy(body.angle_rad, balance);
+        self.torque.energy(body.angle_rad, balance);
         balance.add(NAME, "damping", Account::Lost, self.lost_j);
     }
 

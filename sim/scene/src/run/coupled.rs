@@ -1,11 +1,9 @@
 //! A run with a plant: device → actuator → chain → boundary, tick by tick. The
 //! shaft does what comes of it.
 
-use super::any_device::{Device, Span};
-use super::command::{Command, Stage};
-use super::device::{bare_joint, device};
+use super::device::{Device, Happened, Span, device};
 use super::held_back::Beyond;
-use super::recorder::Happened;
+use super::stages;
 use super::stepping::{CHECK_STEPS, PROGRESS_STEPS};
 use super::tally::TorqueTally;
 use super::watch::{Ended, Stopped, Watch};
@@ -13,14 +11,12 @@ use super::{Diverged, RunError, Totals, steps};
 use crate::any_joint::Precise;
 use crate::scene::Scene;
 use crate::walk::{Cut, Walk};
+use crepitus_model::render::effects::{EffectSpec, SPECS};
 use crepitus_model::solver::Solver;
-use crepitus_plant::actuator::{Commanded, Ideal};
-use crepitus_plant::assembly::PlantVisitor;
-use crepitus_plant::boundary::{Boundary, MotionStep, Prescribed};
-use crepitus_plant::chain::{Body, Chain, Impacts, Shaft};
+use crepitus_plant::boundary::MotionStep;
+use crepitus_plant::chain::{Body, Impacts};
 use crepitus_plant::energy_balance::EnergyBalance;
 use crepitus_plant::{Motion, Plant};
-use std::marker::PhantomData;
 
 /// The totals of a plant.
 pub(super) struct PlantTotals {
@@ -57,77 +53,55 @@ pub const FELT_COLUMN: &str = "hand_torque_nm";
 /// tick, which [`FELT_COLUMN`] leaves out: a plant that can have impacts has it.
 pub const STRUCK_COLUMN: &str = "hand_impact_nms";
 
+/// An effect of the device, its present torque, and its work.
+struct Stage {
+    spec: &'static EffectSpec,
+    /// Place of the effect in the model's table.
+    place: usize,
+    /// True if its contribution is part of the motor's torque.
+    acts_on_joint: bool,
+    added_nm: f64,
+    work_j: f64,
+}
+
 /// Runs a scene with a plant.
 pub(super) fn simulate<F: Precise>(
     scene: &Scene,
     solver: Solver,
     watch: &mut dyn Watch,
 ) -> Result<Totals, Ended> {
-    scene.compose(Coupling::<F> {
-        scene,
-        solver,
-        watch,
-        precision: PhantomData,
-    })?
+    let tick_s = scene.step_s();
+    let plant = scene.assemble()?;
+    let shaft = plant.shaft();
+    let settings = scene.effect_settings();
+    let run = Run {
+        has_tank: scene.gives_energy(),
+        first_felt_nm: first_felt_nm(scene)?,
+        device: device::<F>(scene, solver, tick_s, &shaft)?,
+        plant,
+        stages: stages::listed(scene)
+            .map(|spec| {
+                let place = SPECS.iter().take_while(|s| s.name != spec.name).count();
+                Stage {
+                    spec,
+                    place,
+                    acts_on_joint: settings.acts_on_joint(place),
+                    added_nm: 0.0,
+                    work_j: 0.0,
+                }
+            })
+            .collect(),
+        tick_s,
+        coil_v: 0.0,
+        splits: !scene.is_device && scene.encoder.is_none(),
+        cuts: Vec::new(),
+    };
+    run.go::<F>(scene, watch)
 }
 
-/// Couples a device to whatever plant the scene calls for.
-struct Coupling<'a, F> {
-    scene: &'a Scene,
-    solver: Solver,
-    watch: &'a mut dyn Watch,
-    precision: PhantomData<F>,
-}
-
-impl<F: Precise> Coupling<'_, F> {
-    /// Runs this device on this plant.
-    fn run<A, C, B, D>(self, plant: Plant<A, C, B>, device: D) -> Result<Totals, Ended>
-    where
-        A: Commanded,
-        C: Chain,
-        B: Boundary,
-        D: Device,
-    {
-        let scene = self.scene;
-        let tick_s = scene.step_s();
-        let part_s = tick_s / f64::from(scene.substeps);
-        let run = Run {
-            has_tank: scene.gives_energy(),
-            first_felt_nm: first_felt_nm(scene)?,
-            device,
-            plant,
-            stages: Stage::listed(scene),
-            tick_s,
-            coil_v: 0.0,
-            splits: !scene.is_device && scene.encoder.is_none(),
-            cuts: Vec::new(),
-        };
-        let walk = Walk::new(&scene.motion, part_s).in_parts::<F>();
-        run.go(scene, walk, self.watch)
-    }
-}
-
-impl<F: Precise> PlantVisitor for Coupling<'_, F> {
-    type Output = Result<Totals, Ended>;
-
-    fn visit<A: Commanded, C: Chain, B: Boundary>(self, plant: Plant<A, C, B>) -> Self::Output {
-        let (scene, solver) = (self.scene, self.solver);
-        let device = device::<F>(scene, solver, scene.step_s(), &plant.shaft())?;
-        self.run(plant, device)
-    }
-
-    fn visit_rigid(self, plant: Plant<Ideal, Shaft, Prescribed>) -> Self::Output {
-        let (scene, solver) = (self.scene, self.solver);
-        match bare_joint::<F>(scene, solver, scene.step_s(), &plant.shaft())? {
-            Some(device) => self.run(plant, device),
-            None => self.visit(plant),
-        }
-    }
-}
-
-struct Run<A, C, B, D> {
-    device: D,
-    plant: Plant<A, C, B>,
+struct Run {
+    device: Box<dyn Device>,
+    plant: Plant,
     stages: Vec<Stage>,
     tick_s: f64,
     /// Voltage for the coil, which its PWM loads with the next tick.
@@ -146,7 +120,7 @@ struct Run<A, C, B, D> {
 /// root of the largest number in single precision.
 const FASTEST: f64 = 1e15;
 
-impl<A: Commanded, C: Chain, B: Boundary, D: Device> Run<A, C, B, D> {
+impl Run {
     /// Returns whether a state is NaN, infinite, or soon will be, and which: a shaft that is not finite makes
     /// an object so, and one whose square overflows makes the plant's other states so.
     fn diverged(&self, scene: &Scene, by_s: f64) -> Option<Diverged> {
@@ -172,15 +146,11 @@ impl<A: Commanded, C: Chain, B: Boundary, D: Device> Run<A, C, B, D> {
         })
     }
 
-    fn go(
-        mut self,
-        scene: &Scene,
-        mut walk: Walk<&Motion>,
-        watch: &mut dyn Watch,
-    ) -> Result<Totals, Ended> {
+    fn go<F: Precise>(mut self, scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, Ended> {
         let (steps, every) = steps(scene);
         let wants_rows = watch.wants_rows();
         let parts = scene.substeps;
+        let mut walk = Walk::new(&scene.motion, self.tick_s / f64::from(parts)).in_parts::<F>();
         let is_felt = scene.is_held();
         let mut felt = TorqueTally::default();
         let mut felt_nm = self.first_felt_nm;
@@ -193,13 +163,9 @@ impl<A: Commanded, C: Chain, B: Boundary, D: Device> Run<A, C, B, D> {
         let mut events = Vec::new();
         let mut n = 0;
         let mut time_s = 0.0;
-        let mut command = self.device.command(&mut self.stages);
         loop {
             let before = self.plant.shaft();
-            let speed_rad_s = before.omega_rad_s.abs();
-            if speed_rad_s > fastest_rad_s {
-                fastest_rad_s = speed_rad_s;
-            }
+            fastest_rad_s = fastest_rad_s.max(before.omega_rad_s.abs());
             let is_row = wants_rows && n % every == 0;
             // Before its row: a trace holds numbers.
             if (is_row || n % CHECK_STEPS == 0 || n == steps)
@@ -226,9 +192,7 @@ impl<A: Commanded, C: Chain, B: Boundary, D: Device> Run<A, C, B, D> {
                 break;
             }
             n += 1;
-            let (model_nm, taken_nm) = (command.joint_nm, command.taken_nm);
-            self.plant.command(command.torque_nm, self.coil_v);
-            self.coil_v = command.coil_v;
+            let (model_nm, taken_nm) = self.command();
             let felt_before = self.plant.felt_nms();
             let struck_before = self.plant.struck_nms();
             let after = self.advance(&mut walk, parts);
@@ -239,19 +203,22 @@ impl<A: Commanded, C: Chain, B: Boundary, D: Device> Run<A, C, B, D> {
             let turned = after.angle_rad - before.angle_rad;
             held += model_nm * turned;
             limited += taken_nm * turned;
-            command = self.render(time_s, (before, after), &mut events);
-            if !events.is_empty() {
-                // As a row, an event holds numbers.
-                if let Some(diverged) = self.diverged(scene, time_s) {
-                    return Err(RunError::Diverged(diverged));
-                }
-                tell(&mut events, watch)?;
+            for stage in &mut self.stages {
+                stage.work_j += stage.added_nm * turned;
             }
+            self.render(time_s, (before, after), &mut events);
+            // As a row, an event holds numbers.
+            if !events.is_empty()
+                && let Some(diverged) = self.diverged(scene, time_s)
+            {
+                return Err(RunError::Diverged(diverged));
+            }
+            tell(&mut events, watch)?;
             time_s = walk.time_s();
-            beyond.note(command.asked_nm, (time_s, self.tick_s));
+            beyond.note(self.device.asked_nm(), (time_s, self.tick_s));
         }
         let tank = self.device.tank();
-        let (tally, crowded_steps) = Box::new(self.device).finish(time_s).unzip();
+        let (tally, crowded_steps) = self.device.finish(time_s).unzip();
         Ok(Totals {
             steps,
             end_s: time_s,
@@ -281,18 +248,11 @@ impl<A: Commanded, C: Chain, B: Boundary, D: Device> Run<A, C, B, D> {
         })
     }
 
-    /// One tick of the device, in which the shaft has gone from one state to the next: its next
-    /// command.
-    #[inline]
-    fn render(
-        &mut self,
-        start_s: f64,
-        (from, to): (Body, Body),
-        events: &mut Vec<Happened>,
-    ) -> Command {
-        let stages = &mut self.stages;
+    /// One tick of the device, in which the shaft has gone from one state to the next.
+    fn render(&mut self, start_s: f64, (from, to): (Body, Body), events: &mut Vec<Happened>) {
         if self.cuts.is_empty() {
-            return self.device.tick(start_s, (&from, &to), stages, events);
+            self.device.tick(start_s, &from, &to, events);
+            return;
         }
         let span = Span {
             start_s,
@@ -300,7 +260,7 @@ impl<A: Commanded, C: Chain, B: Boundary, D: Device> Run<A, C, B, D> {
             from,
             to,
         };
-        self.device.tick_in_parts(&span, &self.cuts, stages, events)
+        self.device.tick_in_parts(&span, &self.cuts, events);
     }
 
     /// Writes the columns of the device and of the plant.
@@ -319,6 +279,23 @@ impl<A: Commanded, C: Chain, B: Boundary, D: Device> Run<A, C, B, D> {
             row.extend([shown.torque_nm, f64::from(shown.limit as u8)]);
         }
         self.plant.write(row);
+    }
+
+    /// Commands what the device shows in the next tick. The joint's torque, and
+    /// what guards and limits add to it, N·m.
+    #[inline]
+    fn command(&mut self) -> (f64, f64) {
+        let shown = self.device.shown();
+        let mut all_nm = 0.0;
+        for stage in self.stages.iter_mut().filter(|stage| stage.acts_on_joint) {
+            stage.added_nm = shown.added.get(stage.place).unwrap_or(0.0);
+            all_nm += stage.added_nm;
+        }
+        self.plant.command(shown.torque_nm, self.coil_v);
+        self.coil_v = shown.coil_v;
+        let joint_nm = shown.model_torque_nm - shown.added.symptoms_nm();
+        let taken_nm = shown.torque_nm - joint_nm - all_nm;
+        (joint_nm, taken_nm)
     }
 
     /// The plant through one tick; the shaft at its end, before a jump there.
@@ -340,7 +317,6 @@ impl<A: Commanded, C: Chain, B: Boundary, D: Device> Run<A, C, B, D> {
 }
 
 /// Passes the events of a tick on, in the order of time.
-#[cold]
 fn tell(events: &mut Vec<Happened>, watch: &mut dyn Watch) -> Result<(), Stopped> {
     events.sort_by(|a, b| a.time_s().total_cmp(&b.time_s()));
     for event in events.drain(..) {

@@ -1,24 +1,22 @@
 //! The device of a coupled run: sensor and pipeline, one tick at a time, behind
 //! one call, so that the loop around them is the same for all.
 
-use super::any_device::{Device, Span};
-use super::command::{Command, Stage};
-use super::held_back::TankTotals;
-use super::recorder::{Happened, Heard, Recorder};
+use super::held_back::{TankAccounting, TankTotals};
 use super::sensor::{Encoded, Ideal, Sensor};
-use super::stages::{self, BareStages, HasJoint, Rendering, Retiming};
+use super::stages::{self, HasJoint, Notice, Rendering, Retiming};
 use super::stepping::StepAccounting;
 use super::tally::Tally;
 use crate::any_joint::{AnyJoint, Precise};
 use crate::scene::Scene;
-use crate::trace::{Column, ColumnKind};
+use crate::trace::{Column, ColumnKind, EventRecord, SymptomEvent};
 use crate::walk::Cut;
 use crepitus_model::joint::shaft::Linear;
+use crepitus_model::render::effects::EffectSpec;
 use crepitus_model::render::input_check::Sample;
 use crepitus_model::render::{Bare, ShaftEstimate, Shown};
 use crepitus_model::solver::locate::Locate;
 use crepitus_model::solver::{LocatorVisitor, Solver, with_frozen_locator};
-use crepitus_model::{Real, Settings, SettingsError, ShaftStep, StickSlip, Validated};
+use crepitus_model::{Real, Settings, SettingsError, StickSlip, Validated};
 use crepitus_plant::chain::Body;
 use std::cell::RefCell;
 
@@ -34,6 +32,144 @@ pub(super) const COLUMNS: [Column; 2] = [
         kind: ColumnKind::Whole,
     },
 ];
+
+/// An event of a tick.
+pub(super) enum Happened {
+    Joint(EventRecord),
+    Symptom(SymptomEvent),
+}
+
+impl Happened {
+    pub(super) fn time_s(&self) -> f64 {
+        match self {
+            Self::Joint(event) => event.time_s,
+            Self::Symptom(event) => event.time_s,
+        }
+    }
+}
+
+/// Puts the events of symptoms on record, and what the tank pays of them.
+struct Recorder {
+    step_s: f64,
+    play_events: bool,
+    tank: TankAccounting,
+}
+
+impl Recorder {
+    fn new(scene: &Scene) -> Self {
+        Self {
+            step_s: scene.step_s(),
+            play_events: scene.play_events,
+            tank: TankAccounting::default(),
+        }
+    }
+
+    fn note<F: Real>(
+        &mut self,
+        (start_s, from, to): (f64, &Body, &Body),
+        effect: &'static EffectSpec,
+        notice: &Notice<F>,
+        events: &mut Vec<Happened>,
+    ) {
+        let change = match notice {
+            Notice::Change(change) => change,
+            Notice::Paid { asked_nm, paid_nm } => {
+                let paid = (asked_nm.to_f64(), paid_nm.to_f64());
+                let tick = (start_s + self.step_s, self.step_s);
+                if let Some(ended) = self.tank.paid(effect.name, paid, tick) {
+                    events.push(Happened::Symptom(SymptomEvent {
+                        time_s: tick.0,
+                        effect: effect.name,
+                        word: ended.word,
+                        angle_rad: to.angle_rad,
+                        omega_rad_s: to.omega_rad_s,
+                        torque_before_nm: ended.asked_nm,
+                        torque_after_nm: ended.paid_nm,
+                    }));
+                }
+                return;
+            }
+        };
+        if change.word.is_of_play() && !self.play_events {
+            return;
+        }
+        let fraction = change.fraction.to_f64();
+        let faster = to.omega_rad_s - from.omega_rad_s;
+        let bend_rad = 0.5 * faster * self.step_s;
+        let travel_rad = to.angle_rad - from.angle_rad;
+        events.push(Happened::Symptom(SymptomEvent {
+            time_s: start_s + fraction * self.step_s,
+            effect: effect.name,
+            word: change.word,
+            angle_rad: from.angle_rad + fraction * (travel_rad - bend_rad * (1.0 - fraction)),
+            omega_rad_s: from.omega_rad_s + faster * fraction,
+            torque_before_nm: change.before_nm.to_f64(),
+            torque_after_nm: change.after_nm.to_f64(),
+        }));
+    }
+}
+
+/// A tick, or a part of one, and what the shaft does in it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub(super) start_s: f64,
+    pub(super) length_s: f64,
+    pub(super) from: Body,
+    pub(super) to: Body,
+}
+
+impl Span {
+    /// Parts of the span, between breaks of the motion; one at its start only tells what it starts
+    /// with.
+    fn parts(&self, cuts: &[Cut]) -> Vec<Self> {
+        let mut parts = Vec::with_capacity(cuts.len() + 1);
+        let mut rest = *self;
+        for cut in cuts {
+            let length_s = cut.time_s - rest.start_s;
+            if length_s > 0.0 {
+                parts.push(Self {
+                    length_s,
+                    to: cut.before,
+                    ..rest
+                });
+            }
+            rest.start_s = cut.time_s;
+            rest.length_s -= length_s;
+            rest.from = cut.after;
+        }
+        parts.push(rest);
+        parts
+    }
+}
+
+/// The device's renderer, on the shaft as measured.
+pub(super) trait Device {
+    /// Output from now to the end of the next tick.
+    fn shown(&self) -> Shown<f64>;
+
+    /// One tick, which began at `start_s` and in which the shaft moved so. What
+    /// happens is added to `events`, of each effect in the order of time.
+    fn tick(&mut self, start_s: f64, from: &Body, to: &Body, events: &mut Vec<Happened>);
+
+    /// One tick of a bare solver, in the parts that the motion breaks it into.
+    fn tick_in_parts(&mut self, tick: &Span, cuts: &[Cut], events: &mut Vec<Happened>);
+
+    /// Writes its columns.
+    fn write(&self, row: &mut Vec<f64>);
+
+    /// Torque before the limits of a device, N·m; without one that which is shown.
+    fn asked_nm(&self) -> f64;
+
+    /// Account of what the tank held back so far.
+    fn tank(&self) -> TankTotals;
+
+    /// Returns whether its state is still numbers.
+    fn is_finite(&self) -> bool;
+
+    /// Completes the energy balance of the object, if there is one, and returns in how many
+    /// steps it had as many events as a step may have.
+    fn finish(self: Box<Self>, time_s: f64) -> Option<(Tally, u64)>;
+}
 
 /// The device that a scene calls for, on a shaft that begins like this.
 pub(super) fn device<F: Precise>(
@@ -90,38 +226,9 @@ fn with_sensor<F: Precise, S: Sensor<F> + 'static>(
         let omega = F::from_f64(shaft.omega_rad_s);
         let joint = AnyJoint::new(&crepitus.settings, solver, step_s, omega)?;
         let stages = stages::bare(scene, step_s, Bare(joint))?;
-        return Ok(Box::new(maker.joined(stages)));
+        return Ok(maker.joined(stages));
     }
     with_frozen_locator::<F, _>(solver, maker)
-}
-
-/// A bare solver on a shaft that it sees as it is.
-pub(super) type BareJoint<F> = Joined<F, BareStages<F, Bare<AnyJoint<F>>>, Ideal>;
-
-/// The device of a scene that has a joint alone, without a sensor; `None` if it is another one.
-pub(super) fn bare_joint<F: Precise>(
-    scene: &Scene,
-    solver: Solver,
-    step_s: f64,
-    shaft: &Body,
-) -> Result<Option<BareJoint<F>>, SettingsError> {
-    let Some(crepitus) = &scene.crepitus else {
-        return Ok(None);
-    };
-    if scene.is_device || scene.encoder.is_some() {
-        return Ok(None);
-    }
-    let omega = F::from_f64(shaft.omega_rad_s);
-    let joint = AnyJoint::new(&crepitus.settings, solver, step_s, omega)?;
-    let stages = stages::bare(scene, step_s, Bare(joint))?;
-    let maker = Maker {
-        scene,
-        settings: crepitus.settings,
-        step_s,
-        shaft: *shaft,
-        sensor: Ideal,
-    };
-    Ok(Some(maker.joined(stages)))
 }
 
 /// A device that only looks.
@@ -157,12 +264,12 @@ impl<F: Real, S: Sensor<F> + 'static> LocatorVisitor<F> for Maker<'_, S> {
     fn visit<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
         let joint = stages::crepitus::<F, L>(self.scene, &self.settings, self.step_s)?;
         let stages = stages::drive(self.scene, self.step_s, joint)?;
-        Ok(Box::new(self.joined(stages)))
+        Ok(self.joined(stages))
     }
 }
 
 impl<S: 'static> Maker<'_, S> {
-    fn joined<F: Real, P: HasJoint<F> + 'static>(self, mut stages: P) -> Joined<F, P, S>
+    fn joined<F: Real, P: HasJoint<F> + 'static>(self, mut stages: P) -> Box<dyn Device>
     where
         S: Sensor<F>,
     {
@@ -172,15 +279,14 @@ impl<S: 'static> Maker<'_, S> {
         accounting.tally.shown(torque_nm.to_f64());
         let start = (&self.shaft, &self.sensor);
         let shown = first::<F>(self.scene, &mut stages, torque_nm, start);
-        Joined {
+        Box::new(Joined {
             stages,
             sensor: self.sensor,
             recorder: Recorder::new(self.scene),
             retiming: Retiming::new(self.scene, self.step_s),
             accounting,
-            heard: Heard::new(),
             shown,
-        }
+        })
     }
 }
 
@@ -212,34 +318,13 @@ fn first<F: Real>(
 }
 
 /// A device with a joint.
-pub(super) struct Joined<F, P, S> {
+struct Joined<F, P, S> {
     stages: P,
     sensor: S,
     recorder: Recorder,
     retiming: Retiming,
     accounting: StepAccounting,
-    heard: Heard<F>,
     shown: Shown<F>,
-}
-
-impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Joined<F, P, S> {
-    /// Puts on record what was heard in a tick.
-    #[cold]
-    fn report(
-        &mut self,
-        (start_s, seen): (f64, &ShaftStep<F>),
-        (from, to): (&Body, &Body),
-        events: &mut Vec<Happened>,
-    ) {
-        for event in self.heard.events.drain(..) {
-            let event = self.accounting.event(start_s, seen, &event);
-            events.push(Happened::Joint(event));
-        }
-        for (effect, notice) in self.heard.notices.drain(..) {
-            self.recorder
-                .note((start_s, from, to), effect, &notice, events);
-        }
-    }
 }
 
 impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
@@ -247,40 +332,30 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
         self.shown.to_f64()
     }
 
-    fn command(&self, stages: &mut [Stage]) -> Command {
-        Command::of(&self.shown, self.stages.asked_nm(), 0.0, stages)
+    fn asked_nm(&self) -> f64 {
+        let asked_nm = self.stages.asked_nm();
+        asked_nm.unwrap_or(self.shown.torque_nm).to_f64()
     }
 
     fn tank(&self) -> TankTotals {
-        self.recorder.tank()
+        self.recorder.tank.totals()
     }
 
-    #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "a call of the loop, whose arguments and results would pass through memory"
-    )]
-    fn tick(
-        &mut self,
-        start_s: f64,
-        (from, to): (&Body, &Body),
-        stages: &mut [Stage],
-        events: &mut Vec<Happened>,
-    ) -> Command {
+    fn tick(&mut self, start_s: f64, from: &Body, to: &Body, events: &mut Vec<Happened>) {
         let seen = self.sensor.see(from, to);
-        let Heard {
-            events: happened,
-            notices,
-        } = &mut self.heard;
-        self.stages.tick(
+        let (accounting, recorder) = (&mut self.accounting, &mut self.recorder);
+        let events = RefCell::new(events);
+        self.shown = self.stages.tick(
             &ShaftEstimate::taken(&seen, self.sensor.place(to)),
-            &mut self.shown,
-            &mut |event| happened.push(event),
-            &mut |effect, notice| notices.push((effect, notice)),
+            &mut |event| {
+                let event = accounting.event(start_s, &seen, &event);
+                events.borrow_mut().push(Happened::Joint(event));
+            },
+            &mut |effect, notice| {
+                let events = &mut events.borrow_mut();
+                recorder.note((start_s, from, to), effect, &notice, events);
+            },
         );
-        if !self.heard.is_empty() {
-            self.report((start_s, &seen), (from, to), events);
-        }
         let joint = self.stages.joint();
         if let Some(held_nm) = self.stages.held_nm() {
             let held_nm = held_nm.to_f64();
@@ -289,18 +364,9 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
             let restarts = self.stages.restarts();
             self.accounting.end_tick(&seen, start_s, joint, restarts);
         }
-        let turned_rad = to.angle_rad - from.angle_rad;
-        Command::of(&self.shown, self.stages.asked_nm(), turned_rad, stages)
     }
 
-    #[cold]
-    fn tick_in_parts(
-        &mut self,
-        tick: &Span,
-        cuts: &[Cut],
-        stages: &mut [Stage],
-        events: &mut Vec<Happened>,
-    ) -> Command {
+    fn tick_in_parts(&mut self, tick: &Span, cuts: &[Cut], events: &mut Vec<Happened>) {
         let parts = tick.parts(cuts);
         let (accounting, events) = (&mut self.accounting, RefCell::new(events));
         let recorder = &mut self.recorder;
@@ -335,8 +401,6 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
         recorder.step_s = tick.length_s;
         self.retiming.ticks_of(tick.length_s);
         self.stages.retime(&self.retiming);
-        let turned_rad = tick.to.angle_rad - tick.from.angle_rad;
-        Command::of(&self.shown, self.stages.asked_nm(), turned_rad, stages)
     }
 
     fn write(&self, row: &mut Vec<f64>) {
@@ -376,41 +440,26 @@ impl<F: Real, P: Rendering<F>, S: Sensor<F>> Device for Watching<F, P, S> {
         self.shown.to_f64()
     }
 
-    fn command(&self, stages: &mut [Stage]) -> Command {
-        Command::of(&self.shown, self.stages.asked_nm(), 0.0, stages)
+    fn asked_nm(&self) -> f64 {
+        let asked_nm = self.stages.asked_nm();
+        asked_nm.unwrap_or(self.shown.torque_nm).to_f64()
     }
 
     fn tank(&self) -> TankTotals {
-        self.recorder.tank()
+        self.recorder.tank.totals()
     }
 
-    fn tick(
-        &mut self,
-        start_s: f64,
-        (from, to): (&Body, &Body),
-        stages: &mut [Stage],
-        events: &mut Vec<Happened>,
-    ) -> Command {
+    fn tick(&mut self, start_s: f64, from: &Body, to: &Body, events: &mut Vec<Happened>) {
         let seen = self.sensor.see(from, to);
         let recorder = &mut self.recorder;
-        self.stages.tick(
+        self.shown = self.stages.tick(
             &ShaftEstimate::taken(&seen, self.sensor.place(to)),
-            &mut self.shown,
             &mut |_| {},
             &mut |effect, notice| recorder.note((start_s, from, to), effect, &notice, events),
         );
-        let turned_rad = to.angle_rad - from.angle_rad;
-        Command::of(&self.shown, self.stages.asked_nm(), turned_rad, stages)
     }
 
-    #[cold]
-    fn tick_in_parts(
-        &mut self,
-        tick: &Span,
-        cuts: &[Cut],
-        stages: &mut [Stage],
-        events: &mut Vec<Happened>,
-    ) -> Command {
+    fn tick_in_parts(&mut self, tick: &Span, cuts: &[Cut], events: &mut Vec<Happened>) {
         let parts = tick.parts(cuts);
         let recorder = &mut self.recorder;
         let mut jump_nm = F::ZERO;
@@ -432,8 +481,6 @@ impl<F: Real, P: Rendering<F>, S: Sensor<F>> Device for Watching<F, P, S> {
         recorder.step_s = tick.length_s;
         self.retiming.ticks_of(tick.length_s);
         self.stages.retime(&self.retiming);
-        let turned_rad = tick.to.angle_rad - tick.from.angle_rad;
-        Command::of(&self.shown, self.stages.asked_nm(), turned_rad, stages)
     }
 
     fn write(&self, row: &mut Vec<f64>) {

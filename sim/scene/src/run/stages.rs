@@ -225,14 +225,13 @@ impl<F: Real> Asked<F> for Remembering<F> {
 
 /// A pipeline of any stages.
 pub(super) trait Rendering<F> {
-    /// One tick, as [`Pipeline::tick_observed`] makes it, in the place of what was shown before.
+    /// See [`Pipeline::tick_observed`].
     fn tick(
         &mut self,
         seen: &ShaftEstimate<F>,
-        shown: &mut Shown<F>,
         on_event: &mut dyn FnMut(Event<F>),
         on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
-    );
+    ) -> Shown<F>;
 
     /// Torque before the limits of a device, N·m; none without a device.
     fn asked_nm(&self) -> Option<F>;
@@ -257,29 +256,6 @@ pub(super) trait Rendering<F> {
     fn begin(&mut self, seen: &ShaftEstimate<F>, shown: Shown<F>) -> Shown<F>;
 }
 
-/// Renders a tick, or a part of one, into what is `shown` of it so far.
-#[inline(always)]
-#[expect(
-    clippy::inline_always,
-    reason = "a call of the loop, whose arguments and results would pass through memory"
-)]
-fn render<F: Real, I: Check<F>, S: Symptom<F>, E: Addition<F>, L: Limits<F>>(
-    stages: &mut Pipeline<F, I, S, E, L>,
-    seen: &ShaftEstimate<F>,
-    shown: &mut Shown<F>,
-    on_event: &mut dyn FnMut(Event<F>),
-    on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
-) {
-    let input = stages.check.check(&seen.sample);
-    let torque = stages.symptoms.tick(&input, shown, on_event);
-    shown.torque_nm = torque.shown_nm;
-    shown.model_torque_nm = torque.model_nm;
-    stages
-        .effects
-        .tick(seen, &input, shown, &mut Reports(on_notice));
-    stages.limits.tick(shown);
-}
-
 impl<F: Real, I, S, E, L> Rendering<F> for Pipeline<F, I, S, E, L>
 where
     I: Check<F>,
@@ -300,7 +276,13 @@ where
             jump_nm,
             ..Shown::nothing()
         };
-        render(self, seen, &mut shown, on_event, on_notice);
+        let input = self.check.check(&seen.sample);
+        let torque = self.symptoms.tick(&input, &mut shown, on_event);
+        shown.torque_nm = torque.shown_nm;
+        shown.model_torque_nm = torque.model_nm;
+        self.effects
+            .tick(seen, &input, &mut shown, &mut Reports(on_notice));
+        self.limits.tick(&mut shown);
         if let Some(before) = before {
             self.effects.forget_part(&before);
         }
@@ -312,20 +294,14 @@ where
         self.effects.retime(to);
     }
 
-    #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "a call of the loop, whose arguments and results would pass through memory"
-    )]
+    #[inline]
     fn tick(
         &mut self,
         seen: &ShaftEstimate<F>,
-        shown: &mut Shown<F>,
         on_event: &mut dyn FnMut(Event<F>),
         on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
-    ) {
-        *shown = Shown::nothing();
-        render(self, seen, shown, on_event, on_notice);
+    ) -> Shown<F> {
+        self.tick_observed(seen, on_event, &mut Reports(on_notice))
     }
 
     #[inline]

@@ -294,11 +294,7 @@ impl StepAccounting {
     }
 
     /// Accounts for the rest of a step.
-    #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "a call of the loop, whose arguments and results would pass through memory"
-    )]
+    #[inline]
     pub(super) fn end_step<F: Real, J: StickSlip<F>>(&mut self, seen: &ShaftStep<F>, joint: &J) {
         match joint.phase() {
             Phase::Stick => self.end_stick(seen, joint),
@@ -365,34 +361,14 @@ impl StepAccounting {
         joint: &J,
         restarts: u32,
     ) {
+        let gap = self.gap.take();
         if restarts == self.restarts {
             self.end_step(seen, joint);
-            if self.gap.is_some() {
-                self.close_gap();
+            if let Some(gap) = gap {
+                self.tally.caught_up(&gap);
             }
             return;
         }
-        self.restart(seen, start_s, joint, restarts);
-    }
-
-    /// Ends a gap after which the joint went on.
-    #[cold]
-    fn close_gap(&mut self) {
-        if let Some(gap) = self.gap.take() {
-            self.tally.caught_up(&gap);
-        }
-    }
-
-    /// Accounts for a step in which the joint began again.
-    #[cold]
-    fn restart<F: Real, J: StickSlip<F>>(
-        &mut self,
-        seen: &ShaftStep<F>,
-        start_s: f64,
-        joint: &J,
-        restarts: u32,
-    ) {
-        let gap = self.gap.take();
         self.restarts = restarts;
         self.phi_rad += seen.delta_phi_rad.to_f64();
         let now = object_state(start_s + self.step_s, self.phi_rad, joint);
@@ -414,7 +390,6 @@ impl StepAccounting {
     }
 
     /// Accounts for the stick from the last booked point to `fraction`.
-    #[inline]
     fn book_stick<F: Real>(&mut self, seen: &ShaftStep<F>, fraction: f64, theta_rad: f64) {
         let end = self.stick_end(seen, fraction, theta_rad);
         let delta_phi =
@@ -433,7 +408,6 @@ impl StepAccounting {
     }
 
     /// The stick at `fraction` of the step.
-    #[inline]
     fn stick_end<F: Real>(&self, seen: &ShaftStep<F>, fraction: f64, theta_rad: f64) -> StickEnd {
         let (a, b) = (
             seen.omega_start_rad_s.to_f64(),
@@ -458,7 +432,6 @@ fn object_state<F: Real, J: StickSlip<F>>(time_s: f64, phi_rad: f64, joint: &J) 
 }
 
 /// Shaft angle travelled after `fraction` of a step, rad.
-#[inline]
 fn travel<F: Real>(seen: &ShaftStep<F>, fraction: f64, step_s: f64) -> f64 {
     ShaftStep {
         delta_phi_rad: seen.delta_phi_rad.to_f64(),

@@ -63,8 +63,6 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
         Fault::CommsGateStuck => vec![drive::gate_stuck(Comms)],
         Fault::DriveImageBroken
         | Fault::CommsImageBroken
-        | Fault::DriveCrystal
-        | Fault::CommsCrystal
         | Fault::DriveOptionBytes
         | Fault::CommsOptionBytes => {
             return Provocation::None(
