@@ -1,0 +1,147 @@
+//! A fitted knee as text and as JSON.
+
+use super::grade::Grade;
+use crepitus_identify::knee::{Candidate, KneeFit, Value as Fitted};
+use crepitus_pages::table::Table;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// A value with the digits of its interval.
+fn rounded(value: &Fitted) -> [String; 2] {
+    if !value.estimate.half_width.is_finite() {
+        return [
+            format!("{:.1}", value.estimate.value),
+            "between two strokes".to_owned(),
+        ];
+    }
+    let (number, half_width) = value.estimate.rounded();
+    let how = if value.is_told { "" } else { ", not told" };
+    [number, format!("± {half_width}{how}")]
+}
+
+fn named(candidate: &Candidate) -> String {
+    let muscles = match candidate.symptom.effect() {
+        Some("spasticity" | "clasp-knife" | "clonus") if candidate.is_flexor => " of the flexors",
+        Some("spasticity" | "clasp-knife" | "clonus") => " of the extensors",
+        _ => "",
+    };
+    format!("{}{muscles}", candidate.symptom.name())
+}
+
+/// Text for people.
+pub(super) fn text(fitted: &KneeFit, grade: Option<&Grade>) -> String {
+    let best = &fitted.best;
+    let mut text = format!("{}\n", named(best));
+    // Writing to a String cannot fail.
+    if let Some(grade) = grade {
+        let severity = grade.preset.severity.as_deref().unwrap_or("");
+        let far = if grade.is_far() {
+            "; far from every preset"
+        } else {
+            ""
+        };
+        let _ = writeln!(
+            text,
+            "nearest preset: {} ({severity}), {:.1} steps away{far}",
+            grade.preset.name, grade.distance
+        );
+    }
+    if !best.values.is_empty() {
+        text.push('\n');
+        text += &Table::of(&best.values)
+            .people("value", |value| value.key)
+            .people("fitted", |value| rounded(value)[0].clone())
+            .right()
+            .people("95 %", |value| rounded(value)[1].clone())
+            .people("unit", |value| value.unit)
+            .to_text();
+    }
+    let (friction, half_width) = fitted.friction_nm.rounded();
+    let unexplained = &fitted.unexplained;
+    let _ = writeln!(
+        text,
+        "\ndry friction of limb and apparatus: {friction} ± {half_width} N·m\n\
+         not explained: {:.3} N·m rms, {:.1} % of the torque's variance",
+        unexplained.rms_nm,
+        100.0 * unexplained.share
+    );
+    let worst = unexplained
+        .by_angle
+        .iter()
+        .max_by(|a, b| a.1.total_cmp(&b.1));
+    if let Some((angle_deg, rms_nm)) = worst {
+        let _ = writeln!(text, "  most about {angle_deg:.0}°: {rms_nm:.3} N·m rms");
+    }
+    let _ = writeln!(
+        text,
+        "error in strokes left out: {:.4} N·m rms; of the next model, {}: {:.4}",
+        best.left_out_nm,
+        named(&fitted.second),
+        fitted.second.left_out_nm
+    );
+    for (symptom, why) in &fitted.untold {
+        let _ = writeln!(text, "cannot be told: {}: {why}", symptom.name());
+    }
+    text
+}
+
+fn candidate(it: &Candidate) -> Value {
+    let values: Vec<Value> = (it.values.iter())
+        .map(|value| {
+            let half_width = value.estimate.half_width;
+            json!({
+                "key": value.key,
+                "unit": value.unit,
+                "value": value.estimate.value,
+                "half_width": half_width.is_finite().then_some(half_width),
+                "is_told": value.is_told,
+            })
+        })
+        .collect();
+    json!({
+        "symptom": it.symptom.name(),
+        "effect": it.symptom.effect(),
+        "muscles": if it.is_flexor { "flexors" } else { "extensors" },
+        "values": values,
+        "residual_nm": it.residual_nm,
+        "left_out_nm": it.left_out_nm,
+        "largest_nm": it.largest_nm,
+    })
+}
+
+/// Returns the fit as JSON.
+pub(super) fn summary(fitted: &KneeFit, grade: Option<&Grade>) -> Value {
+    let strokes: Vec<Value> = (fitted.strokes.iter())
+        .map(|stroke| {
+            json!({
+                "begins_s": stroke.begins_s,
+                "from_deg": stroke.from_deg,
+                "to_deg": stroke.to_deg,
+                "peak_deg_s": stroke.peak_deg_s,
+            })
+        })
+        .collect();
+    let untold: Vec<Value> = (fitted.untold.iter())
+        .map(|(symptom, why)| json!({ "symptom": symptom.name(), "why": why }))
+        .collect();
+    json!({
+        "proposed": candidate(&fitted.best),
+        "next": candidate(&fitted.second),
+        "grade": grade.map(|grade| json!({
+            "preset": grade.preset.name,
+            "severity": grade.preset.severity,
+            "steps": grade.distance,
+            "is_far": grade.is_far(),
+            "next": grade.next.map(|(name, steps)| json!({ "preset": name, "steps": steps })),
+        })),
+        "friction_nm": { "value": fitted.friction_nm.value, "half_width": fitted.friction_nm.half_width },
+        "unexplained": {
+            "rms_nm": fitted.unexplained.rms_nm,
+            "share": fitted.unexplained.share,
+            "by_angle": fitted.unexplained.by_angle.iter()
+                .map(|(deg, nm)| json!({ "deg": deg, "rms_nm": nm })).collect::<Vec<_>>(),
+        },
+        "cannot_be_told": untold,
+        "strokes": strokes,
+    })
+}
