@@ -14,15 +14,12 @@ use crepitus_protocol::parameters::PARAMETERS;
 use crepitus_recording::{Metadata, Recorder};
 use crepitus_scene::Knee;
 use crepitus_scene::Overrides;
-use crepitus_scene::preset::{self, Preset};
 use crepitus_scene::shipped;
-use crepitus_scene::values::{with_named, with_preset, with_scene};
-use crepitus_studies::experiment::finding::HEALTHY;
+use crepitus_scene::values::{with_preset, with_scene};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyInt};
 use serde_json::{Map, Value};
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process;
@@ -177,34 +174,6 @@ impl Device {
                 Knee::Scene(scene) => with_scene(&now, scene)
                     .map_err(|error| PyValueError::new_err(error.to_string()))?,
             };
-            client.commit(base, &values).map_err(failure)
-        })
-        .map(|revision| revision.0)
-    }
-
-    /// Applies a preset, or a healthy knee, with some of its parameters, in one commit; returns the new revision.
-    fn present(
-        &self,
-        py: Python<'_>,
-        preset: &str,
-        values: BTreeMap<String, f64>,
-    ) -> PyResult<u32> {
-        let preset = match preset::find(preset) {
-            Some(preset) => preset.clone(),
-            None if preset == HEALTHY => Preset::default(),
-            None => match knee(Path::new(preset))? {
-                Knee::Preset(preset) => *preset,
-                Knee::Scene(_) => {
-                    let message = format!("{preset}: expected a preset, got a scene");
-                    return Err(PyValueError::new_err(message));
-                }
-            },
-        };
-        self.work(py, |client| {
-            let (base, now) = client.parameters().map_err(failure)?;
-            let values = values.iter().map(|(name, value)| (name.as_str(), *value));
-            let values = with_named(&now, &preset, values)
-                .map_err(|error| PyValueError::new_err(error.to_string()))?;
             client.commit(base, &values).map_err(failure)
         })
         .map(|revision| revision.0)

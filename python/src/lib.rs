@@ -24,7 +24,6 @@
 //! | many runs of a scene | `sweep.rs` |
 //! | a joint to step by hand | `joint.rs` |
 //! | devices, what they are given | `device.rs`, `knee.rs` |
-//! | experiments with people | `experiment.rs` |
 //! | samples, recordings, examinations | `following.rs`, `received.rs`, `samples.rs`, `examination.rs` |
 
 // Python hands its arguments over by value.
@@ -34,7 +33,6 @@ mod columns;
 mod device;
 mod errors;
 mod examination;
-mod experiment;
 mod following;
 mod joint;
 mod knee;
@@ -56,7 +54,6 @@ fn _crepitus(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<scene::Scene>()?;
     module.add_class::<joint::Joint>()?;
     module.add_class::<device::Device>()?;
-    module.add_class::<experiment::Session>()?;
     module.add_function(wrap_pyfunction!(run::simulate, module)?)?;
     module.add_function(wrap_pyfunction!(studies::accuracy, module)?)?;
     module.add_function(wrap_pyfunction!(studies::effects, module)?)?;
@@ -66,13 +63,5 @@ fn _crepitus(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(shipped::presets, module)?)?;
     module.add_function(wrap_pyfunction!(shipped::parameters, module)?)?;
     module.add_function(wrap_pyfunction!(examination::examination, module)?)?;
-    for function in [
-        wrap_pyfunction!(experiment::experiment_results, module)?,
-        wrap_pyfunction!(experiment::experiment_participants, module)?,
-        wrap_pyfunction!(experiment::experiment_export, module)?,
-        wrap_pyfunction!(experiment::experiment_delete, module)?,
-    ] {
-        module.add_function(function)?;
-    }
     module.add_function(wrap_pyfunction!(samples::read_recording, module)?)
 }

@@ -12,9 +12,7 @@ pub(crate) mod devices;
 pub(crate) mod disarm;
 pub(crate) mod doctor;
 pub(crate) mod effects;
-pub(crate) mod experiment;
 pub(crate) mod export;
-pub(crate) mod fit;
 pub(crate) mod identify;
 pub(crate) mod identify_actuator;
 pub(crate) mod info;
@@ -71,7 +69,6 @@ verbs! {
     Calibrate: calibrate,
     Identify: identify,
     IdentifyActuator: identify_actuator,
-    Fit: fit,
     Zero: zero,
     Arm: arm,
     Disarm: disarm,
@@ -89,7 +86,6 @@ verbs! {
     Laws: laws,
     Effects: effects,
     Vibration: vibration,
-    Experiment: experiment,
     Scenes: scenes,
     Presets: presets,
     Completions: completions,

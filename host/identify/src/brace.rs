@@ -17,7 +17,6 @@
 //! | what is compared, and the intervals | `problem.rs`, `prior.rs`, `fit.rs` |
 //! | where a swing begins and ends | `swing.rs`, `passing.rs` |
 //! | the quantities, and where each stands in a scene | [`Quantity`] |
-//! | what the model of rigid parts leaves out, and how a result names it | `imperfect.rs`, [`Imperfections`](crepitus_plant::swing::Imperfections) |
 //! | what is visible, and what is refused | `visible.rs`, `whole.rs`, `plausible.rs`, [`Refusal`] |
 //!
 //! ```
@@ -37,7 +36,6 @@
 
 mod fit;
 mod identified;
-mod imperfect;
 mod numbers;
 mod passing;
 mod plausible;

@@ -11,7 +11,7 @@ use crepitus_protocol::coil::COIL_FAULTS;
 use crepitus_protocol::fault::FAULTS;
 use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter, When};
 use crepitus_protocol::{TICKS_PER_S, Values};
-use crepitus_scene::preset::{self, Disorder, Evidence, Judgement, Preset};
+use crepitus_scene::preset::{self, Disorder, Evidence, Preset};
 use crepitus_scene::values::{is_effect, is_of_knee, with_preset};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -140,7 +140,6 @@ fn described(preset: &Preset, is_own: bool) -> Value {
         "feel": preset.feel,
         "evidence": preset.evidence.map(Evidence::name),
         "source": preset.source,
-        "judged": preset.judgements().iter().map(Judgement::to_text).collect::<Vec<_>>(),
         "own": is_own,
         "effects": effects,
         "values": values,

@@ -18,7 +18,6 @@ a joint in a loop of your own   :class:`Joint`
 a device, real or simulated     :class:`Device`, :func:`parameters`
 recordings                      :func:`read_recording`, :class:`Recording`
 measures of an examination      :func:`examination`
-experiments with people         :mod:`crepitus.experiments`
 ==============================  ==================================================
 
 Names end in their unit: ``t_s`` is in s, ``angle_rad`` in rad, ``omega_rad_s`` in rad/s,
@@ -27,7 +26,6 @@ Names end in their unit: ``t_s`` is in s, ``angle_rad`` in rad, ``omega_rad_s`` 
 Crepitus is a research and education prototype, not a medical device.
 """
 
-from . import experiments
 from ._crepitus import Scene, __version__
 from ._device import Device, Info, Recording, Stream, examination, parameters, read_recording
 from ._errors import CrepitusError, DeviceError, RunError, SceneError
@@ -53,7 +51,6 @@ __all__ = [
     "accuracy",
     "effects",
     "examination",
-    "experiments",
     "parameters",
     "presets",
     "read_recording",

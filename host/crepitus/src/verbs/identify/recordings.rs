@@ -6,33 +6,21 @@ use crate::progress::Progress;
 use crepitus_identify::brace::{Recording, Sample};
 use crepitus_protocol::telemetry::SampleFlags;
 use crepitus_protocol::{DeviceSettings, TICK_S};
-use crepitus_recording::{Damage, ReadError, Recording as File};
+use crepitus_recording::{Damage, Recording as File};
 use std::path::{Path, PathBuf};
 
 /// Rows between two looks at Ctrl-C.
 const ROWS: usize = 1 << 14;
 
-/// Reads them all; what is no recording is read by `foreign`.
-pub(super) fn read(
-    files: &[PathBuf],
-    foreign: &dyn Fn(&Path) -> Result<Recording, Failure>,
-) -> Result<Vec<Recording>, Failure> {
+/// Reads them all.
+pub(super) fn read(files: &[PathBuf]) -> Result<Vec<Recording>, Failure> {
     let mut progress = Progress::of_reading();
-    let mut one = |path: &PathBuf| match File::open(path, Damage::Refuse) {
-        Ok(file) => one(&file, path, &mut progress),
-        Err(error @ ReadError::Foreign(_)) => foreign(path).map_err(|failure| match failure {
-            Failure::Input(table) => {
-                Failure::Input(format!("{error}; and no table of a swing: {table}"))
-            }
-            other => other,
-        }),
-        Err(error) => Err(Failure::input(error)),
-    };
-    files.iter().map(&mut one).collect()
+    files.iter().map(|file| one(file, &mut progress)).collect()
 }
 
-fn one(file: &File, path: &Path, progress: &mut Progress) -> Result<Recording, Failure> {
-    let settings = settings(file, path)?;
+fn one(path: &Path, progress: &mut Progress) -> Result<Recording, Failure> {
+    let file = File::open(path, Damage::Refuse).map_err(Failure::input)?;
+    let settings = settings(&file, path)?;
     let total = file.accounting().totals.received.max(1);
     let mut samples = Vec::new();
     for row in file.rows().map_err(Failure::input)? {

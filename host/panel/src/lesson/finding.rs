@@ -34,7 +34,7 @@ impl Finding {
 }
 
 /// Name of the knee without a disorder, and of that finding.
-pub const HEALTHY: &str = "healthy";
+pub(crate) const HEALTHY: &str = "healthy";
 
 impl From<Finding> for String {
     fn from(finding: Finding) -> Self {
@@ -95,34 +95,26 @@ impl From<&Preset> for Knee {
 }
 
 /// The level of this name.
-pub fn find_level(name: &str) -> Option<Level> {
+pub(crate) fn find_level(name: &str) -> Option<Level> {
     Level::ALL.into_iter().find(|level| level.name() == name)
 }
 
 /// A level by its name, for serde.
-pub mod level_name {
+pub(crate) mod level_name {
     use super::{Level, find_level};
     use serde::de::Error;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    /// Writes the name, or null.
-    ///
-    /// # Errors
-    /// Of the serializer.
     // The signature is serde's.
     #[allow(clippy::trivially_copy_pass_by_ref, clippy::ref_option)]
-    pub fn serialize<S: Serializer>(
+    pub(crate) fn serialize<S: Serializer>(
         level: &Option<Level>,
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
         level.map(Level::name).serialize(serializer)
     }
 
-    /// Reads a name, or null.
-    ///
-    /// # Errors
-    /// Of the deserializer, and for an unknown name.
-    pub fn deserialize<'de, D: Deserializer<'de>>(
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
         deserializer: D,
     ) -> Result<Option<Level>, D::Error> {
         let Some(name) = Option::<String>::deserialize(deserializer)? else {

@@ -22,9 +22,6 @@
 //!    finished without repetition. Where no order without repetition exists, the one with the
 //!    fewest is made. A list without repeats stays as shuffled.
 
-/// Largest seed: a number that JavaScript, JSON and a person's note keep exactly, 2⁵³ - 1.
-pub const MOST_SEED: u64 = (1 << 53) - 1;
-
 /// SplitMix64.
 #[derive(Clone, Debug)]
 pub struct SplitMix64(u64);

@@ -1,5 +1,5 @@
 use super::*;
-use crate::experiment::order::SplitMix64;
+use crate::lesson::order::SplitMix64;
 use proptest::prelude::*;
 
 /// Table, weights, kappa and standard error of `statsmodels.stats.inter_rater.cohens_kappa`

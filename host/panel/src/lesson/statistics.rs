@@ -6,7 +6,6 @@
 //! ```text
 //! nominal   w_ij = 1 if i = j, else 0
 //! linear    w_ij = 1 - |i - j| / (k - 1)          k ordered categories
-//! quadratic w_ij = 1 - ((i - j) / (k - 1))²
 //!
 //! po = Σ w_ij p_ij       observed agreement
 //! pe = Σ w_ij p_i. p_.j  agreement by chance
@@ -34,7 +33,7 @@
 
 /// Half the width of a 95 % interval in standard errors: the 0.975 quantile of the normal
 /// distribution.
-pub(super) const QUANTILE: f64 = 1.959_963_984_540_054;
+const QUANTILE: f64 = 1.959_963_984_540_054;
 
 /// Cohen's kappa.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,8 +61,6 @@ pub enum Weights {
     Nominal,
     /// The less the further it is away.
     Linear,
-    /// The less the further it is away, by the square.
-    Quadratic,
 }
 
 impl Weights {
@@ -71,9 +68,8 @@ impl Weights {
     fn of<const K: usize>(self, i: usize, j: usize) -> f64 {
         match self {
             Self::Nominal => f64::from(u8::from(i == j)),
-            _ if K < 2 => 1.0,
+            Self::Linear if K < 2 => 1.0,
             Self::Linear => 1.0 - i.abs_diff(j) as f64 / (K - 1) as f64,
-            Self::Quadratic => 1.0 - (i.abs_diff(j) as f64 / (K - 1) as f64).powi(2),
         }
     }
 }
