@@ -106,6 +106,12 @@ fn the_doctor_finds_nothing_wrong_with_the_images() {
     }
     let report = json(&["doctor"]);
     assert_eq!(report["fine"], true, "{report:#}");
+    let checks = report["checks"].as_array().expect("checks");
+    for what in ["drive times", "comms times"] {
+        let check = checks.iter().find(|check| check["what"] == what);
+        let found = check.expect(what)["found"].as_str().expect("a text");
+        assert!(found.contains("emulated cycles"), "{found}");
+    }
 }
 
 #[test]

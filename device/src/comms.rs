@@ -34,9 +34,10 @@ use crate::self_test::SelfTest;
 use crate::usb_port::HostBytes;
 use crepitus_protocol::counters::CommsCounter;
 use crepitus_protocol::crash::Head;
-use crepitus_protocol::frame::{Frame, SoftwareCrc, WordCrc};
+use crepitus_protocol::frame::{self, Frame, SoftwareCrc, WordCrc};
 use crepitus_protocol::link::FromDrive;
 use crepitus_protocol::management::{Answer, Identity};
+use crepitus_protocol::task_times::{DeviceTimes, TaskTimes};
 use crepitus_protocol::telemetry::{BLOCK_TICKS, Block};
 use crepitus_protocol::{Decoder, Fault, Lane, Revision, State, Values};
 use drive_clock::DriveClock;
@@ -116,6 +117,8 @@ pub struct Comms {
     saving: Option<Revision>,
     /// Post-mortem record of the last crash.
     crash: Option<Head>,
+    /// Times of the tasks of comms, as of the last report.
+    times: Option<TaskTimes>,
     /// Time of the requested reboot, ms.
     reboot_ms: Option<u64>,
 }
@@ -147,6 +150,7 @@ impl Comms {
             save_is_due: false,
             saving: None,
             crash: boot.crash,
+            times: None,
             reboot_ms: None,
         }
     }
@@ -179,6 +183,19 @@ impl Comms {
     /// Reports the result of saving [`Outputs::save`].
     pub fn saved(&mut self, done: bool) {
         self.finish_save(done);
+    }
+
+    /// Stores a report of the tasks of comms.
+    pub fn set_times(&mut self, times: &TaskTimes) {
+        self.times = Some(*times);
+    }
+
+    /// Times of both controllers, as of their last reports.
+    pub fn times(&self) -> DeviceTimes {
+        DeviceTimes {
+            drive: self.drive.times(),
+            comms: self.times,
+        }
     }
 
     /// Receives a byte from the drive.
@@ -234,6 +251,20 @@ impl Comms {
                 self.poll_job();
             }
             FromDrive::CrashPart(part) => self.crash_part(part),
+            FromDrive::Times(times) => {
+                self.drive.receive_times(times);
+                self.stream_times();
+            }
+        }
+    }
+
+    /// Sends the times to a host that has subscribed; one that does not read goes without.
+    fn stream_times(&mut self) {
+        if !self.sessions.has_subscriber() {
+            return;
+        }
+        if let Ok(frame) = frame::encode(Lane::Times, &self.times()) {
+            self.outbox.telemetry(&frame);
         }
     }
 

@@ -1,16 +1,29 @@
-//! Event counters; those of the drive are atomic, so any priority may use them.
+//! Event counters; those of the drive are atomic, so any priority may use them. With them go the
+//! reports of the tasks' times to the link.
 
+use crate::task_times::PendingReport;
 use core::sync::atomic::{AtomicU32, Ordering};
 use crepitus_protocol::counters::{CommsCounter, DRIVE_COUNT, DriveCounter};
 
 /// The counters of the drive; they wrap.
 #[derive(Debug, Default)]
-pub struct Counters([AtomicU32; DRIVE_COUNT]);
+pub struct Counters {
+    counts: [AtomicU32; DRIVE_COUNT],
+    times: PendingReport,
+}
 
 impl Counters {
     /// All at zero.
     pub const fn new() -> Self {
-        Self([const { AtomicU32::new(0) }; DRIVE_COUNT])
+        Self {
+            counts: [const { AtomicU32::new(0) }; DRIVE_COUNT],
+            times: PendingReport::new(),
+        }
+    }
+
+    /// Report of the tasks' times on its way to the link.
+    pub fn times(&self) -> &PendingReport {
+        &self.times
     }
 
     /// Increments a counter.
@@ -20,21 +33,21 @@ impl Counters {
 
     /// Adds `more` to a counter.
     pub fn add(&self, counter: DriveCounter, more: u32) {
-        if let Some(place) = self.0.get(counter.index()) {
+        if let Some(place) = self.counts.get(counter.index()) {
             place.fetch_add(more, Ordering::Relaxed);
         }
     }
 
     /// Returns one counter.
     pub fn get(&self, counter: DriveCounter) -> u32 {
-        self.0
+        self.counts
             .get(counter.index())
             .map_or(0, |place| place.load(Ordering::Relaxed))
     }
 
     /// Reads all counters, in the order of their table.
     pub fn read(&self, into: &mut [u32; DRIVE_COUNT]) {
-        for (count, counter) in into.iter_mut().zip(&self.0) {
+        for (count, counter) in into.iter_mut().zip(&self.counts) {
             *count = counter.load(Ordering::Relaxed);
         }
     }

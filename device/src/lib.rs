@@ -14,10 +14,12 @@
 //!
 //! | to find | look in |
 //! |---|---|
+//! | what is wired to the controllers, with its values | [`board`] |
 //! | the drive's tick: sample, render, command | [`drive`] |
 //! | host requests, the lease, supervision of the drive | [`comms`] |
 //! | the USB port of comms | [`usb_port`] |
 //! | stored parameters | [`parameter_log`] |
+//! | cycles of the hardware tasks | [`task_times`] |
 //!
 //! No code here allocates, panics, blocks or loops without a bound.
 #![no_std]
@@ -45,11 +47,13 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod board;
 pub mod comms;
 pub mod counters;
 pub mod drive;
 pub mod parameter_log;
 pub mod self_test;
+pub mod task_times;
 pub mod usb_port;
 
 pub use comms::Comms;

@@ -13,6 +13,7 @@ use crepitus_protocol::frame::{self, BODY_BYTES, CRC, Frame};
 use crepitus_protocol::host::{Reply, Request};
 use crepitus_protocol::link::{FromDrive, ToDrive};
 use crepitus_protocol::management::{Answer, ManagementRequest};
+use crepitus_protocol::task_times::DeviceTimes;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Lane};
 use serde::Serialize;
@@ -145,6 +146,7 @@ fn understood(body: &Body<'_>) {
         Some(lane @ Lane::Telemetry) => rewritten::<Block>(lane, body),
         Some(lane @ Lane::ToDrive) => rewritten::<ToDrive>(lane, body),
         Some(lane @ Lane::FromDrive) => rewritten::<FromDrive>(lane, body),
+        Some(lane @ Lane::Times) => rewritten::<DeviceTimes>(lane, body),
     }
 }
 

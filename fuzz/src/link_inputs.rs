@@ -43,6 +43,7 @@ pub(crate) fn operation(bytes: &mut Bytes<'_>, revision: Revision) -> Operation 
         0 | 1 => Operation::Renew,
         2 => Operation::Open,
         3 if bytes.byte() < 128 => Operation::Status,
+        3 if bytes.byte() < 128 => Operation::Times,
         3 => Operation::Counters,
         4 => Operation::Parameters,
         5 | 6 => Operation::Commit {

@@ -405,7 +405,7 @@ proptest! {
 
     #[test]
     fn a_current_loop_is_bounded_and_mirrors(
-        s in within_the_table::<5, CurrentLoopSettings>(),
+        s in within_the_table::<7, CurrentLoopSettings>(),
         inputs in prop::collection::vec((anything(), anything()), 1..300),
     ) {
         let mut regulator = CurrentLoop::<f32>::new(&s, TICK_S).unwrap();

@@ -28,7 +28,7 @@ macro_rules! faults {
         }
 
         /// All faults, in the order of their codes.
-        pub const FAULTS: [FaultSpec; 48] = [$(FaultSpec {
+        pub const FAULTS: [FaultSpec; 50] = [$(FaultSpec {
             fault: Fault::$fault,
             name: $name,
             cause: $cause,
@@ -176,7 +176,7 @@ faults! {
     CommsPanic = 39, "comms-panic", Comms, STAYS, None, CLEAR;
         "a bug in the program";
         "its panic or fault handler, at the next boot";
-    DriveClock = 40, "drive-clock", Comms, LINE_OFF, Some(1_100), REPAIR;
+    DriveClock = 40, "drive-clock", Comms, LINE_OFF, Some(1_300), REPAIR;
         "a crystal of the wrong frequency, a timer that is disturbed, or blocks that are late by 20 ms";
         "the drive's ticks and the milliseconds of comms differ by more than 20 ms within 4 s";
     CommsOvercurrent = 41, "comms-overcurrent", Comms, LINE_OFF, Some(100), REPAIR;
@@ -211,6 +211,12 @@ faults! {
     CommsOptionBytes = 48, "comms-option-bytes", Comms, STAYS, None, "program the option bytes, then switch off and on";
         "the option bytes of comms are not those of this board";
         "at every start: brown-out level 3, and a watchdog that software starts";
+    DriveCrystal = 49, "drive-crystal", Drive, STAYS, None, "fit the board's crystal, or name it in the board description";
+        "the drive has another crystal than its program is made for, or none that works";
+        "at every start: the crystal, counted by the internal oscillator, is not within 5 % of the board description's";
+    CommsCrystal = 50, "comms-crystal", Comms, STAYS, None, "fit the board's crystal, or name it in the board description";
+        "comms has another crystal than its program is made for, or none that works";
+        "at every start: the crystal, counted by the internal oscillator, is not within 5 % of the board description's";
 }
 
 impl Fault {

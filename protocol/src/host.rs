@@ -16,6 +16,7 @@ use crate::parameters::Values;
 use crate::revision::{Nonce, Revision, Session};
 use crate::settings::ValueError;
 use crate::state::State;
+use crate::task_times::DeviceTimes;
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -84,6 +85,8 @@ pub enum Operation {
     /// this session has armed the device: to identify it. It ends by itself, and
     /// with the torque. → [`Answer::Done`] when it begins
     PlayChirp(PlayedChirp),
+    /// Reads the times of the hardware tasks. → [`Answer::Times`]
+    Times,
 }
 
 /// Reply of comms.
@@ -135,6 +138,8 @@ pub enum Answer {
     },
     /// A part of a post-mortem record.
     CrashPart(Part),
+    /// The times of the hardware tasks.
+    Times(DeviceTimes),
 }
 
 /// Status of the device.

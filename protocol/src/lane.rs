@@ -19,6 +19,8 @@ pub enum Lane {
     ToDrive,
     /// Drive to comms: [`FromDrive`](crate::link::FromDrive).
     FromDrive,
+    /// Comms to host, once a second beside blocks: [`DeviceTimes`](crate::task_times::DeviceTimes).
+    Times,
 }
 
 /// The tag of the management lane, its version; it never changes.
@@ -26,7 +28,7 @@ pub const MANAGEMENT_TAG: u8 = b'1';
 
 impl Lane {
     /// All lanes.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Management,
         Self::ManagementAnswer,
         Self::Request,
@@ -34,6 +36,7 @@ impl Lane {
         Self::Telemetry,
         Self::ToDrive,
         Self::FromDrive,
+        Self::Times,
     ];
 
     /// The first byte of a frame: a letter, readable in a dump.
@@ -46,6 +49,7 @@ impl Lane {
             Self::Telemetry => b'T',
             Self::ToDrive => b'D',
             Self::FromDrive => b'S',
+            Self::Times => b'C',
         }
     }
 

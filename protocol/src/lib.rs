@@ -32,6 +32,7 @@
 //! | faults: code, cause, detector, reaction, time, how to clear | [`fault`] |
 //! | faults of the vibration actuator's coil | [`coil`] |
 //! | counters | [`counters`] |
+//! | cycles of the hardware tasks, stack | [`task_times`] |
 //! | post-mortem record | [`crash`] |
 //! | USB ids, to discover a device | [`usb`] |
 #![no_std]
@@ -79,6 +80,7 @@ pub mod revision;
 pub mod schema;
 pub mod settings;
 pub mod state;
+pub mod task_times;
 pub mod telemetry;
 pub mod usb;
 

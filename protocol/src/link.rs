@@ -18,6 +18,7 @@ use crate::pieces::Piece;
 use crate::revision::Revision;
 use crate::settings::ValueError;
 use crate::state::State;
+use crate::task_times::TaskTimes;
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -96,6 +97,13 @@ pub enum FromDrive {
     Status(DriveStatus),
     /// A part of the post-mortem record.
     CrashPart(crash::Part),
+    /// Times of the tasks, sent once a second by a drive that measures them.
+    Times(TaskTimes),
+}
+
+impl FromDrive {
+    /// First byte of the message [`Self::Times`], for an incremental encoder; the words follow.
+    pub const TIMES: u8 = 2;
 }
 
 /// Bytes of a counter, at most.

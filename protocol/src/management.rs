@@ -74,6 +74,9 @@ pub struct Identity {
     pub reset: ResetCause,
 }
 
+/// Serial number of an emulated chip: X 1, Y 2, wafer 3, lot `EMUL405`.
+pub const EMULATED_SERIAL: [u8; 12] = *b"\x01\x00\x02\x00\x03EMUL405";
+
 /// Bytes of an [`Identity`].
 pub const IDENTITY_BYTES: usize = 32;
 
@@ -160,6 +163,11 @@ impl ManagementRequest {
 }
 
 impl Identity {
+    /// Returns whether its chip is emulated: then its cycles are no measurement.
+    pub fn is_emulated(&self) -> bool {
+        self.serial == EMULATED_SERIAL
+    }
+
     /// Encodes it.
     pub fn bytes(&self) -> [u8; IDENTITY_BYTES] {
         let role = match self.role {

@@ -190,7 +190,7 @@ mod tests {
         values[9] = 0.7;
         assert_eq!(to_send(&values), 1 | 1 << 2 | 1 << (PIECES - 1));
         let all = [0.125; PARAMETER_COUNT];
-        assert_eq!(count(&all), 31);
+        assert_eq!(count(&all), 32);
     }
 
     /// It equals the default, but the seal is over its bytes.
@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn a_piece_with_an_invalid_index_is_ignored() {
         let mut reassembly = Reassembly::new(0, 0, 1);
-        for index in [31, 32, 255] {
+        for index in [32, 33, 255] {
             let before = reassembly;
             reassembly.add(&Piece {
                 index,

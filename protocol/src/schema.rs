@@ -1,7 +1,7 @@
 //! Schema hash: compatibility of two programs.
 //!
 //! [`HASH`] is computed at compile time from the shape and the names of every
-//! message and from the parameters, faults and counters, in their order; of parameters
+//! message and from the parameters, faults, counters and tasks, in their order; of parameters
 //! with ranges and defaults: a commit leaves out values that are the default.
 //! Programs with equal hashes are compatible; others only on the
 //! [management lane](crate::management). The low byte is the tag of all other
@@ -13,6 +13,7 @@ use crate::fault::FAULTS;
 use crate::host::{Reply, Request};
 use crate::link::{FromDrive, ToDrive};
 use crate::parameters::{Kind, PARAMETERS};
+use crate::task_times::{COMMS_TASKS, DRIVE_TASKS, DeviceTimes};
 use crate::telemetry::Block;
 use postcard::experimental::max_size::MaxSize;
 use postcard_schema::key::Key;
@@ -42,6 +43,14 @@ const fn counted(mut hash: u64, mut list: &[CounterSpec]) -> u64 {
     hash
 }
 
+const fn named(mut hash: u64, mut list: &[&str]) -> u64 {
+    while let [name, tail @ ..] = list {
+        hash = update(hash, name.as_bytes());
+        list = tail;
+    }
+    hash
+}
+
 const fn numbers(mut hash: u64, mut list: &[f64]) -> u64 {
     while let [number, tail @ ..] = list {
         hash = update(hash, &number.to_bits().to_le_bytes());
@@ -57,6 +66,7 @@ const fn hash() -> u64 {
     hash = update(hash, &Key::for_path::<Block>("telemetry").to_bytes());
     hash = update(hash, &Key::for_path::<ToDrive>("to-drive").to_bytes());
     hash = update(hash, &Key::for_path::<FromDrive>("from-drive").to_bytes());
+    hash = update(hash, &Key::for_path::<DeviceTimes>("times").to_bytes());
     let mut parameters: &[_] = &PARAMETERS;
     while let [parameter, tail @ ..] = parameters {
         hash = update(hash, parameter.group.as_bytes());
@@ -90,7 +100,9 @@ const fn hash() -> u64 {
         faults = tail;
     }
     hash = counted(hash, &DRIVE_COUNTERS);
-    counted(hash, &COMMS_COUNTERS)
+    hash = counted(hash, &COMMS_COUNTERS);
+    hash = named(hash, &DRIVE_TASKS);
+    named(hash, &COMMS_TASKS)
 }
 
 /// Bytes of the longest message.
@@ -100,6 +112,7 @@ pub const LONGEST_MESSAGE: usize = longest(&[
     Block::POSTCARD_MAX_SIZE,
     ToDrive::POSTCARD_MAX_SIZE,
     FromDrive::POSTCARD_MAX_SIZE,
+    DeviceTimes::POSTCARD_MAX_SIZE,
     crate::management::ANSWER_BYTES,
 ]);
 

@@ -280,9 +280,11 @@ mod tests {
         assert_eq!(of("encoder"), s.encoder.values());
         assert_eq!(of("limits"), s.limits.values());
         assert_eq!(of("range"), s.range.values());
+        // What came later has later ids.
+        let (regulator, motor) = (s.current_loop.values(), s.motor.values());
         assert_eq!(
             of("motor"),
-            [s.current_loop.values().as_slice(), &s.motor.values()].concat()
+            [&regulator[..5], &motor[..], &regulator[5..]].concat()
         );
         for spec in effects::SPECS {
             assert_eq!(of(spec.name).first(), Some(&1.0), "{}", spec.name);

@@ -103,13 +103,15 @@ impl Device {
         py.detach(|| self.lock().is_none())
     }
 
-    /// Returns port, identities, status, faults and counters (JSON).
+    /// Returns port, identities, status, faults, counters and times of the tasks (JSON).
     fn info(&self, py: Python<'_>) -> PyResult<String> {
         self.request(py, |client| {
             let status = client.status()?;
             let counters = client.counters()?;
+            let times = client.times()?;
             let (port, handshake) = (client.port(), client.handshake());
-            Ok(device_text::info_json(&port, handshake, &status, &counters).to_string())
+            let info = device_text::info_json(&port, handshake, &status, &counters, &times);
+            Ok(info.to_string())
         })
     }
 

@@ -23,6 +23,11 @@ pub(super) const USES: &[(&str, Use)] = &[
         "arm --scene",
         Endless("arm --device sim --scene {} --for 1s"),
     ),
+    ("bring-up --out", Written),
+    (
+        "bring-up --scene",
+        Ends("bring-up --yes --device sim --scene {} --out {out}"),
+    ),
     ("calibrate --out", Written),
     (
         "calibrate --scene",
@@ -137,6 +142,7 @@ pub(super) const NO_FILES: &[&str] = &[
     "CONVENTION",
     "DEVICE",
     "EFFECT",
+    "FAULT",
     "FEEL",
     "FORMAT",
     "G",
@@ -177,4 +183,5 @@ pub(super) const NO_FILES: &[&str] = &[
     "DISORDER",
     "one|two",
     "COMMAND",
+    "ROW",
 ];

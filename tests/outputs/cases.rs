@@ -180,6 +180,11 @@ pub(super) const CASES: &[Case] = &[
         ],
     ),
     slow(
+        "bring-up",
+        &["--device", "none", "--yes"],
+        &["bring-up.json", "report.html"],
+    ),
+    slow(
         "calibrate",
         &["--device", "none", "--yes"],
         &["calibration.json", "report.html", "currents.svg"],

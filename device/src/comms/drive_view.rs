@@ -3,6 +3,7 @@
 use crepitus_protocol::counters::DRIVE_COUNT;
 use crepitus_protocol::link::{DriveStatus, Outcome};
 use crepitus_protocol::management::Identity;
+use crepitus_protocol::task_times::TaskTimes;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Revision, State, ValueError};
 
@@ -38,6 +39,8 @@ pub struct DriveView {
     /// Samples that the drive itself had dropped up to its last block.
     dropped: u32,
     status: Option<DriveStatus>,
+    /// Times of its tasks, as of its last report since its start.
+    times: Option<TaskTimes>,
 }
 
 impl DriveView {
@@ -87,6 +90,16 @@ impl DriveView {
         if is_newer && !self.is_other_boot {
             self.status = Some(*status);
         }
+    }
+
+    /// Stores the times of its tasks.
+    pub fn receive_times(&mut self, times: &TaskTimes) {
+        self.times = Some(*times);
+    }
+
+    /// Times of its tasks, if it has reported any since its start.
+    pub fn times(&self) -> Option<TaskTimes> {
+        self.times
     }
 
     /// Stores the drive's identity.

@@ -120,6 +120,7 @@ impl Comms {
                 drive: self.drive.counters(),
                 comms: self.counters.all(),
             })),
+            Operation::Times => answered(Answer::Times(self.times())),
             Operation::Parameters => answered(Answer::Parameters {
                 revision: self.parameters.revision(),
                 values: *self.parameters.values(),

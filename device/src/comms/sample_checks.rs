@@ -13,7 +13,7 @@ mod bounds;
 
 pub use bounds::Bounds;
 
-use crate::drive::plausibility::TRIP_A;
+use crate::board::TRIP_A;
 use crepitus_model::Real;
 use crepitus_protocol::telemetry::{BLOCK_TICKS, Block, NO_CURRENT, Sample, SampleFlags};
 use crepitus_protocol::{Fault, State};

@@ -30,6 +30,7 @@ impl Supervision {
             was_armed: false,
             fault: match (self_test, reset) {
                 (SelfTest::ImageBroken, _) => Some(Fault::CommsImageBroken),
+                (SelfTest::CrystalWrong, _) => Some(Fault::CommsCrystal),
                 (SelfTest::OptionBytesWrong, _) => Some(Fault::CommsOptionBytes),
                 (_, ResetCause::Power | ResetCause::Requested) => None,
                 (_, ResetCause::Watchdog) => Some(Fault::CommsWatchdog),
@@ -104,7 +105,7 @@ impl Supervision {
     /// Clears the fault of comms; returns it if its cause persists.
     pub fn clear(&mut self, line_is_on: bool) -> Option<Fault> {
         let persists = match self.fault {
-            Some(Fault::CommsImageBroken | Fault::CommsOptionBytes) => true,
+            Some(Fault::CommsImageBroken | Fault::CommsCrystal | Fault::CommsOptionBytes) => true,
             Some(Fault::CommsEnableStuckOn) => line_is_on,
             _ => false,
         };
@@ -201,7 +202,11 @@ mod tests {
 
     #[test]
     fn a_fault_is_cleared_when_its_cause_is_gone() {
-        for self_test in [SelfTest::ImageBroken, SelfTest::OptionBytesWrong] {
+        for self_test in [
+            SelfTest::ImageBroken,
+            SelfTest::CrystalWrong,
+            SelfTest::OptionBytesWrong,
+        ] {
             let mut supervision = Supervision::new(ResetCause::Power, self_test);
             let fault = supervision.fault();
             assert!(fault.is_some());

@@ -17,8 +17,8 @@ use crepitus_protocol::telemetry::{
 /// Ticks of a window of the back-EMF check.
 const WINDOW: usize = emf_check::TICKS as usize;
 
-/// Blocks that may be queued for the link.
-pub const QUEUE_BLOCKS: usize = 4;
+/// Blocks that may be queued for the link: while the frames of a commit arrive they take turns with the blocks.
+pub const QUEUE_BLOCKS: usize = 8;
 
 /// Slots of the ring buffer: the queue and the block that is being filled.
 const SLOTS: usize = QUEUE_BLOCKS + 1;
@@ -206,13 +206,13 @@ mod tests {
             assert_eq!(block.dropped, 0);
             last = Some(block.sequence);
         }
-        // Four were queued; sequence numbers continue through the wrap.
-        assert_eq!((received, last), (80, Some(2)));
+        // Eight were queued; sequence numbers continue through the wrap.
+        assert_eq!((received, last), (160, Some(6)));
         produce(&mut batch, 1);
         let block = pop(&mut batch).unwrap();
         assert_eq!(
             (block.dropped, block.sequence, block.first_tick),
-            (40, 5, 100)
+            (40, 9, 180)
         );
         received += 20;
         assert_eq!(counters.get(DriveCounter::Produced), received + 40);
@@ -260,7 +260,7 @@ mod tests {
         let mut batch = Batch::new(0, 0);
         let mut next = 0;
         let mut expected = 0;
-        for waits in [0, 3, 1, 4, 4, 2, 0, 4] {
+        for waits in [0, 7, 1, 8, 8, 2, 0, 8] {
             for _ in 0..(waits + 1) * 20 {
                 let sample = Sample {
                     count: next,

@@ -25,6 +25,7 @@
 //! the voltage, and a fifth of it at the resonance; a coil whose two wires are swapped, as current and voltage
 //! fit; anything while the command is below 0.08 A.
 
+use crate::board::LARGEST_COIL_DUTY;
 use crate::drive::prepare::CoilPlan;
 use crepitus_model::Real;
 use crepitus_model::render::effects::vibration_actuator::HEATING_S;
@@ -41,10 +42,6 @@ pub enum CoilOutput {
     /// pushes the shell towards growing angle.
     Driven(f32),
 }
-
-/// The largest duty: the driver brakes for 2 µs on either side of the middle of the
-/// tick, where the currents are converted.
-pub const LARGEST_COIL_DUTY: f32 = 0.92;
 
 /// Ticks without a measured current until the fault.
 const MISSING_TICKS: u8 = 3;

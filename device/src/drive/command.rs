@@ -30,11 +30,11 @@ use crepitus_protocol::{Revision, State};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a line by itself")]
 pub struct Inputs {
-    /// The current, A, positive towards growing angle: that of the loop. `None`
+    /// The current, A, positive towards growing angle, by the amplifier at half A. `None`
     /// if its converter has no result.
     pub current_a: Option<f32>,
-    /// The current, A, by a shunt, an amplifier and a converter of its own, which
-    /// nothing but checks uses.
+    /// The current, A, by a shunt, an amplifier and a converter of its own at half B. The loop takes
+    /// that of the half that switched earlier; checks take both.
     pub monitor_a: Option<f32>,
     /// Time since the last call, by another timer than the one that calls, µs.
     pub interval_us: u32,
@@ -360,9 +360,10 @@ impl Command {
             self.monitor_offset_a = monitor_a;
         }
         permit = self.with_comms(permit, inputs.comms_enable_is_on, counters);
-        let current_a = inputs.current_a.map(|raw_a| self.motor.current_a(raw_a));
+        let sensor_a = inputs.current_a.map(|raw_a| self.motor.sensor_a(raw_a));
         let monitor_a = inputs.monitor_a.map(|raw_a| raw_a - self.monitor_offset_a);
-        let currents_a = current_a.zip(monitor_a);
+        let current_a = sensor_a.map(|sensor_a| self.motor.current_a(sensor_a, monitor_a));
+        let currents_a = sensor_a.zip(monitor_a);
         permit = self.floating(permit, currents_a, rendered.omega_rad_s, counters);
         if matches!(permit, Permit::Torque | Permit::Push(_)) {
             let emf_contradicts = self.check_emf(rendered, current_a, is_late);
@@ -374,6 +375,7 @@ impl Command {
                     is_late,
                     torque_is_finite: rendered.torque_nm.is_finite(),
                     current_a,
+                    sensor_a,
                     monitor_a,
                     emf_contradicts,
                     interval_us: inputs.interval_us,

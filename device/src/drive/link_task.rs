@@ -240,6 +240,11 @@ impl<P: BorrowMut<FrameBuffer>> LinkTask<P> {
             self.crash_part = None;
             return begun;
         }
+        if counters.times().is_pending() {
+            let buffer = spare()?;
+            counters.times().take(self.outgoing.times_mut());
+            return self.outgoing.begin_times(buffer).ok();
+        }
         if self.is_gathered {
             let begun = self.outgoing.begin_status(spare()?).ok();
             self.is_gathered = false;

@@ -3,6 +3,7 @@
 use crate::drive::prepare::MotorPlan;
 use crepitus_model::Real;
 use crepitus_model::control::current_loop::{CurrentLoop, Limit};
+use crepitus_model::control::current_path::earlier_half_a;
 
 /// Output of the bridge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -37,6 +38,9 @@ pub struct Motor {
     emf_rad_s: f32,
     /// Output of the tick before the last.
     before: Bridge,
+    /// Voltage that the dead time takes of both outputs, V.
+    fed_v: f32,
+    fed_before_v: f32,
 }
 
 impl Motor {
@@ -51,6 +55,8 @@ impl Motor {
             bridge: Bridge::Float,
             emf_rad_s: 0.0,
             before: Bridge::Float,
+            fed_v: 0.0,
+            fed_before_v: 0.0,
         }
     }
 
@@ -60,13 +66,29 @@ impl Motor {
     }
 
     /// Subtracts the sensor's offset.
-    pub fn current_a(&self, raw_a: f32) -> f32 {
+    pub fn sensor_a(&self, raw_a: f32) -> f32 {
         raw_a - self.offset_a
+    }
+
+    /// The current, A, of what both sensors show without their offsets: by the amplifier of the half that switched
+    /// earlier in this tick, and without lag. Where no half switches it is the sensor of the loop; so it is without
+    /// the monitor, whose absence is a fault.
+    #[inline]
+    pub fn current_a(&self, sensor_a: f32, monitor_a: Option<f32>) -> f32 {
+        match (self.bridge, monitor_a) {
+            (Bridge::Float, _) => sensor_a,
+            (_, None) => self.current_loop.corrected_a(sensor_a),
+            (bridge, Some(monitor_a)) => {
+                let shown_a = earlier_half_a(sensor_a, monitor_a, self.duty(bridge));
+                self.current_loop.corrected_a(shown_a)
+            }
+        }
     }
 
     /// Lets the bridge float.
     pub fn float(&mut self) -> Bridge {
         (self.before, self.bridge) = (Bridge::Float, Bridge::Float);
+        (self.fed_v, self.fed_before_v) = (0.0, 0.0);
         self.setpoint_a = 0.0;
         self.measured_a = 0.0;
         self.bridge
@@ -96,12 +118,14 @@ impl Motor {
     /// growing angle. Without a measurement the bridge floats for this tick.
     pub fn drive(&mut self, torque_nm: f32, current_a: Option<f32>) -> Bridge {
         let setpoint_a = -torque_nm * self.plan.per_joint_constant;
-        self.before = self.bridge;
+        (self.before, self.fed_before_v) = (self.bridge, self.fed_v);
         self.bridge = match current_a {
             Some(measured_a) if measured_a.is_finite() && setpoint_a.is_finite() => {
                 self.update_emf(measured_a);
                 self.measured_a = measured_a;
-                Bridge::Driven(self.current_loop.tick(setpoint_a, measured_a))
+                let volts = self.current_loop.tick(setpoint_a, measured_a);
+                self.fed_v = self.current_loop.fed_v();
+                Bridge::Driven(volts)
             }
             _ => Bridge::Float,
         };
@@ -117,6 +141,7 @@ impl Motor {
         };
         let mean_a = 0.5 * (measured_a + self.measured_a);
         let emf_v = volts
+            - self.fed_v
             - self.plan.resistance_ohm * mean_a
             - self.plan.inductance_per_tick_ohm * (measured_a - self.measured_a);
         let measured_rad_s = emf_v * self.plan.per_joint_constant;
@@ -140,7 +165,8 @@ impl Motor {
         if self.limited_by() != Some(Limit::Voltage) {
             return false;
         }
-        let left_v = (volts - self.plan.joint_constant * omega_rad_s) * 1.0_f32.copysign(volts);
+        let left_v =
+            (volts - self.fed_v - self.plan.joint_constant * omega_rad_s) * 1.0_f32.copysign(volts);
         let needed_a = self.setpoint_a.abs() + CURRENT_SLACK_A;
         (0.0..WARM * self.plan.resistance_ohm * needed_a).contains(&left_v)
     }
@@ -155,7 +181,9 @@ impl Motor {
     /// tick after its own. `None` if the bridge floated.
     pub fn mean_v(&self) -> Option<f32> {
         match (self.before, self.bridge) {
-            (Bridge::Driven(before), Bridge::Driven(last)) => Some(0.5 * (before + last)),
+            (Bridge::Driven(before), Bridge::Driven(last)) => {
+                Some(0.5 * (before + last - (self.fed_before_v + self.fed_v)))
+            }
             _ => None,
         }
     }
@@ -167,6 +195,11 @@ impl Motor {
             Bridge::Driven(volts) => volts * self.plan.duty_per_volt,
             Bridge::Float => 0.0,
         }
+    }
+
+    /// Share of the supply's voltage in this tick, before [`Self::drive`].
+    pub fn duty_now(&self) -> f32 {
+        self.duty(self.bridge)
     }
 
     /// The coefficients in force.
@@ -188,7 +221,8 @@ impl Motor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drive::prepare::{LARGEST_DUTY, Preparation};
+    use crate::board::LARGEST_DUTY;
+    use crate::drive::prepare::Preparation;
 
     /// A motor whose sensor shows nothing, until its voltage is at the limit.
     fn at_the_limit(torque_nm: f32) -> Motor {

@@ -6,8 +6,9 @@ use crepitus_protocol::Lane;
 use crepitus_protocol::counters::DRIVE_COUNT;
 use crepitus_protocol::crash::{PART_WORDS, Part};
 use crepitus_protocol::frame::{self, EncodedFrame, Encoder, FrameBuffer, TooLong, WordCrc};
-use crepitus_protocol::link::{COUNTER_BYTES, DriveStatus};
+use crepitus_protocol::link::{COUNTER_BYTES, DriveStatus, FromDrive};
 use crepitus_protocol::management::{Answer, AnswerBytes};
+use crepitus_protocol::task_times::TIMES_WORDS;
 use crepitus_protocol::telemetry::{
     BLOCK_SAMPLES, Block, BlockHead, EFFECT_PHASES_BYTES, EffectPhases, SAMPLE_BYTES, Sample,
 };
@@ -31,7 +32,7 @@ const PIECE_BYTES: usize = DriveStatus::HEAD_BYTES;
 const _: () = assert!(Block::HEAD_BYTES <= PIECE_BYTES);
 const _: () = assert!(PIECE_WORDS * COUNTER_BYTES <= PIECE_BYTES);
 
-/// Words per piece of a status's counters, or of the post-mortem record.
+/// Words per piece of a status's counters, of the post-mortem record, or of the tasks' times.
 const PIECE_WORDS: usize = 4;
 
 /// The part of a frame that is still to be encoded.
@@ -45,6 +46,8 @@ enum Rest {
     Counters(usize),
     /// The words of a part of the post-mortem record, from this one on.
     CrashPart(usize),
+    /// The words of the tasks' times, from this one on.
+    Times(usize),
     /// Checksum and delimiter; those of a block come with its last phases.
     End,
     /// The head of a block, so many bytes, which were written when it began.
@@ -86,6 +89,7 @@ pub struct Outgoing<P> {
     answer: AnswerBytes,
     status: DriveStatus,
     crash_part: [u32; PART_WORDS],
+    times: [u32; TIMES_WORDS],
     /// The bytes of a piece before they are framed. Kept, because clearing it for each
     /// takes as long as filling it.
     bytes: [u8; PIECE_BYTES],
@@ -99,6 +103,7 @@ impl<P> Default for Outgoing<P> {
             answer: AnswerBytes::new(),
             status: DriveStatus::default(),
             crash_part: [0; PART_WORDS],
+            times: [0; TIMES_WORDS],
             bytes: [0; PIECE_BYTES],
         }
     }
@@ -150,6 +155,22 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
             PART_WORDS
         };
         (self.current, self.rest) = (Some(encoder), Rest::CrashPart(left));
+        Ok(())
+    }
+
+    /// Words of the next times. While they are being sent nobody changes them.
+    pub fn times_mut(&mut self) -> &mut [u32; TIMES_WORDS] {
+        &mut self.times
+    }
+
+    /// Starts the frame of [the times](Self::times_mut).
+    ///
+    /// # Errors
+    /// [`TooLong`]; never, as they fit.
+    pub fn begin_times(&mut self, buffer: P) -> Result<(), TooLong> {
+        let mut encoder = Encoder::new(buffer, Lane::FromDrive)?;
+        encoder.push(&[FromDrive::TIMES])?;
+        (self.current, self.rest) = (Some(encoder), Rest::Times(0));
         Ok(())
     }
 
@@ -288,6 +309,13 @@ impl<P: BorrowMut<FrameBuffer>> Outgoing<P> {
                 };
                 (write_words(words, &mut self.bytes)?, next)
             }
+            Rest::Times(from) => {
+                let to = from.saturating_add(PIECE_WORDS);
+                let is_whole = to >= TIMES_WORDS;
+                let words = self.times.get(from..)?;
+                let next = if is_whole { Rest::End } else { Rest::Times(to) };
+                (write_words(words, &mut self.bytes)?, next)
+            }
             Rest::Head(length) => (self.bytes.get(..length)?, Rest::Samples(0)),
             Rest::Samples(_) | Rest::FirstPhases | Rest::LastPhases => return None,
             Rest::End => return self.finish(),
@@ -313,8 +341,8 @@ mod tests {
     use super::*;
     use crepitus_protocol::Revision;
     use crepitus_protocol::frame::{FRAME_BYTES, Frame, SoftwareCrc};
-    use crepitus_protocol::link::FromDrive;
     use crepitus_protocol::management::Identity;
+    use crepitus_protocol::task_times::TaskTimes;
     use crepitus_protocol::telemetry::{BlockFlags, CoilCurrent};
 
     type Places = Outgoing<FrameBuffer>;
@@ -388,6 +416,17 @@ mod tests {
             assert_eq!(frame, frame::encode(Lane::FromDrive, &whole).unwrap());
             assert!(runs <= 5, "{runs}");
         }
+        let times = TaskTimes {
+            latest_sample: u32::MAX,
+            stack_bytes: 65_536,
+            ..TaskTimes::default()
+        };
+        *outgoing.times_mut() = times.words();
+        outgoing.begin_times(buffer()).unwrap();
+        let (frame, runs) = run(&mut outgoing, &block);
+        let whole = FromDrive::Times(times);
+        assert_eq!(frame, frame::encode(Lane::FromDrive, &whole).unwrap());
+        assert!(runs <= 6, "{runs}");
         outgoing.begin_block(buffer(), &block.head()).unwrap();
         let (frame, runs) = run(&mut outgoing, &block);
         assert_eq!(frame, frame::encode(Lane::Telemetry, &block).unwrap());

@@ -4,22 +4,25 @@
 //! the ticks, by which [`FAULTS`](crepitus_protocol::fault::FAULTS) gives its
 //! times.
 //!
-//! **Current** is judged by three opinions: the sensor of the loop, the monitor
+//! **Current** is judged by three opinions: the sensor, the monitor
 //! with a shunt and an amplifier of its own, and what voltage and motion say
 //! ([`emf_check`](crate::drive::emf_check)). The monitor's amplifier also feeds the
 //! comparator, which needs no program.
 
+use crate::board::TRIP_A;
 use crate::drive::motor::{CURRENT_SLACK_A, Motor};
 use crate::drive::sampler::LOST_TICKS;
 use crepitus_model::Real;
 use crepitus_protocol::{Fault, TICK_US};
 
-/// Overcurrent threshold, A: the hardware trips there, too.
-pub const TRIP_A: f32 = 1.95;
-
 /// Largest difference of the two current sensors, A: 2 × 1 % of the range, and
 /// the noise of two conversions.
 const SENSORS_SLACK_A: f32 = 0.2;
+
+/// Duty beyond which the half that switches later does so less than 5 µs before the first sample, and what its
+/// amplifier may be off by more for a larger one, A: 0.2 A at the largest.
+const UNSETTLED_DUTY: f32 = 0.5;
+const UNSETTLED_A: f32 = 0.6;
 
 /// Largest deviation of the time between two ticks, µs.
 const INTERVAL_SLACK_US: u32 = 5;
@@ -136,8 +139,10 @@ pub struct Observation {
     pub is_late: bool,
     /// The rendered torque is finite.
     pub torque_is_finite: bool,
-    /// The current without the sensor's offset, A.
+    /// The current of the loop, A.
     pub current_a: Option<f32>,
+    /// Current of the sensor without its offset, A.
+    pub sensor_a: Option<f32>,
     /// Current of the monitor without its offset, A.
     pub monitor_a: Option<f32>,
     /// Voltage, current and motion contradict each other over some ticks.
@@ -227,21 +232,23 @@ fn conditions(
     speed_limit_rad_s: f32,
     speeds_excess: f32,
 ) -> Conditions {
-    let (current_a, monitor_a) = (observed.current_a, observed.monitor_a);
+    let (current_a, sensor_a) = (observed.current_a, observed.sensor_a);
+    let monitor_a = observed.monitor_a;
     let encoder = observed.omega_rad_s;
     let is_over = |a: Option<f32>| a.is_some_and(|a| a.abs() > TRIP_A);
-    let sensors_differ = (current_a.zip(monitor_a))
-        .is_some_and(|(sensor, monitor)| (sensor - monitor).abs() > SENSORS_SLACK_A);
+    let unsettled_a = UNSETTLED_A * (motor.duty_now().abs() - UNSETTLED_DUTY).at_least(0.0);
+    let sensors_differ = (sensor_a.zip(monitor_a))
+        .is_some_and(|(sensor, monitor)| (sensor - monitor).abs() > SENSORS_SLACK_A + unsettled_a);
     let deviates = current_a.is_some_and(|a| (a - motor.setpoint_a()).abs() > CURRENT_SLACK_A);
     let is_excused = deviates && motor.is_out_of_voltage(encoder);
     let is_irregular = observed.interval_us.abs_diff(TICK_US) > INTERVAL_SLACK_US;
     let conditions = Conditions::of([
         observed.has_tripped,
         !observed.torque_is_finite,
-        is_over(current_a) || is_over(monitor_a),
+        is_over(sensor_a) || is_over(monitor_a),
         sensors_differ,
         observed.emf_contradicts,
-        current_a.is_none() || monitor_a.is_none(),
+        sensor_a.is_none() || monitor_a.is_none(),
         is_irregular,
         !observed.enable_is_on,
         observed.lost_ticks > 0,
@@ -362,6 +369,7 @@ mod tests {
                 is_late: false,
                 torque_is_finite: true,
                 current_a: Some(current_a),
+                sensor_a: Some(current_a),
                 monitor_a: Some(monitor_a),
                 emf_contradicts: false,
                 interval_us: TICK_US,

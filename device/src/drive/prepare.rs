@@ -4,6 +4,7 @@
 //! need logarithms in f64 to compute. The idle loop does that; the tick applies
 //! a complete [`Prepared`] between two blocks of telemetry.
 
+use crate::board::LARGEST_DUTY;
 use crate::drive::commits::Taken;
 use crate::drive::overload::OverloadPlan;
 use crate::drive::range::RangePlan;
@@ -25,10 +26,6 @@ const FASTEST_RAD_S: f64 = 50.0;
 /// Share of the supply that the back-EMF of a floating motor may have: the
 /// estimate of its speed lags.
 const FLOATS_SHARE: f64 = 0.7;
-
-/// Largest duty: the lower switches of both halves are closed for 2 µs on either side of
-/// the middle, where the currents are converted.
-pub const LARGEST_DUTY: f32 = 0.84;
 
 /// Share of the speed at which the back-EMF is the largest voltage of the bridge, up to which
 /// there is torque. Beyond that speed a current flows that nothing holds, and brakes the leg.

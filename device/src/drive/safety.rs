@@ -63,6 +63,7 @@ impl Safety {
     pub fn new(reset: ResetCause, self_test: SelfTest) -> Self {
         let defect = match self_test {
             SelfTest::ImageBroken => Some(Fault::DriveImageBroken),
+            SelfTest::CrystalWrong => Some(Fault::DriveCrystal),
             SelfTest::OptionBytesWrong => Some(Fault::DriveOptionBytes),
             SelfTest::Passed => None,
         };
@@ -283,7 +284,11 @@ mod tests {
     /// A fault of the self-test stays latched behind a more urgent fault.
     #[test]
     fn a_defect_stays_until_the_next_start() {
-        for self_test in [SelfTest::ImageBroken, SelfTest::OptionBytesWrong] {
+        for self_test in [
+            SelfTest::ImageBroken,
+            SelfTest::CrystalWrong,
+            SelfTest::OptionBytesWrong,
+        ] {
             let counters = Counters::default();
             let mut safety = Safety::new(ResetCause::Power, self_test);
             let defect = safety.fault();

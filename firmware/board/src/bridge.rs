@@ -16,18 +16,18 @@
 //! and idle levels are locked until the next reset.
 
 use crate::clocks::APB2_TIMER_HZ;
-use crepitus_device::drive::prepare::LARGEST_DUTY;
+use crate::pins::resistor;
+use crepitus_device::board::pins::drive;
+use crepitus_device::board::{DEAD_CLOCKS, LARGEST_DUTY, PWM_HZ, Pull};
 use crepitus_model::Real;
-use stm32f4xx_hal::gpio::{Alternate, PA8, PA9, PB12, PB13, PB14, Pin, Pull, Speed};
+use stm32f4xx_hal::gpio::alt::tim1::{Bkin, Ch1, Ch1N, Ch2, Ch2N};
+use stm32f4xx_hal::gpio::{PinPull, PinSpeed, Speed};
 use stm32f4xx_hal::pac::TIM1;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
 /// Counts from bottom to top.
 pub(crate) const TOP: u16 = 4_200;
-const _: () = assert!(2 * TOP as u32 * 20_000 == APB2_TIMER_HZ);
-
-/// Dead time: 50 clocks of 168 MHz, 0.3 µs.
-const DEAD_CLOCKS: u8 = 50;
+const _: () = assert!(2 * TOP as u32 * PWM_HZ == APB2_TIMER_HZ);
 
 /// Clocks without switching before and after the middle of a tick, at the largest
 /// duty. Before it, the last edge is late by the dead time.
@@ -51,13 +51,15 @@ impl Bridge {
     /// A floating bridge; the timer is not started.
     pub fn new(
         timer: TIM1,
-        half_a: (PA8, PB13),
-        half_b: (PA9, PB14),
-        breaks: PB12,
+        half_a: (impl Into<Ch1>, impl Into<Ch1N>),
+        half_b: (impl Into<Ch2>, impl Into<Ch2N>),
+        breaks: impl Into<Bkin>,
         rcc: &mut Rcc,
     ) -> Self {
         TIM1::enable(rcc);
         TIM1::reset(rcc);
+        // Its enable starts the other timers.
+        timer.cr2().write(|w| w.mms().enable());
         timer
             .cr1()
             .write(|w| w.cms().center_aligned1().arpe().set_bit());
@@ -85,13 +87,12 @@ impl Bridge {
         };
         bridge.set_duty(0.0);
         bridge.timer.egr().write(|w| w.ug().set_bit());
-        breaks
-            .into_alternate::<1>()
-            .set_internal_resistor(Pull::Down);
-        output(half_a.0.into_alternate::<1>());
-        output(half_a.1.into_alternate::<1>());
-        output(half_b.0.into_alternate::<1>());
-        output(half_b.1.into_alternate::<1>());
+        let mut breaks: Bkin = breaks.into();
+        breaks.set_internal_resistor(resistor(drive::BREAK.pull));
+        output::<Ch1>(half_a.0.into(), drive::UPPER_A.pull);
+        output::<Ch1N>(half_a.1.into(), drive::LOWER_A.pull);
+        output::<Ch2>(half_b.0.into(), drive::UPPER_B.pull);
+        output::<Ch2N>(half_b.1.into(), drive::LOWER_B.pull);
         bridge.float();
         bridge
     }
@@ -143,9 +144,9 @@ impl Bridge {
 
 /// A pin of the bridge: low where nothing drives it, and with edges that are
 /// short beside the dead time.
-fn output<const P: char, const N: u8>(pin: Pin<P, N, Alternate<1>>) {
-    let mut pin = pin.speed(Speed::Medium);
-    pin.set_internal_resistor(Pull::Down);
+fn output<P: PinPull + PinSpeed>(mut pin: P, pull: Pull) {
+    pin.set_speed(Speed::Medium);
+    pin.set_internal_resistor(resistor(pull));
 }
 
 fn counts(share: f32) -> u16 {

@@ -24,9 +24,12 @@
 //! locked until the next reset. An actuator that is not used costs one test.
 
 use crate::bridge::{QUIET_CLOCKS, TOP};
-use crepitus_device::drive::coil::LARGEST_COIL_DUTY;
+use crate::pins::resistor;
+use crepitus_device::board::pins::drive;
+use crepitus_device::board::{LARGEST_COIL_DUTY, Pull};
 use crepitus_model::Real;
-use stm32f4xx_hal::gpio::{Alternate, PA6, PC8, PC9, Pin, Pull, Speed};
+use stm32f4xx_hal::gpio::alt::tim8::{Bkin, Ch3, Ch4};
+use stm32f4xx_hal::gpio::{PinPull, PinSpeed, Speed};
 use stm32f4xx_hal::pac::TIM8;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
@@ -47,10 +50,16 @@ pub struct Coil {
 }
 
 impl Coil {
-    /// A driver that sleeps; the timer is not started.
-    pub fn new(timer: TIM8, inputs: (PC8, PC9), fault: PA6, rcc: &mut Rcc) -> Self {
+    /// A driver that sleeps; the timer waits for [that of the bridge](crate::ticks::start).
+    pub fn new(
+        timer: TIM8,
+        inputs: (impl Into<Ch3>, impl Into<Ch4>),
+        fault: impl Into<Bkin>,
+        rcc: &mut Rcc,
+    ) -> Self {
         TIM8::enable(rcc);
         TIM8::reset(rcc);
+        timer.smcr().write(|w| w.ts().itr0().sms().trigger_mode());
         timer
             .cr1()
             .write(|w| w.cms().center_aligned1().arpe().set_bit());
@@ -68,20 +77,14 @@ impl Coil {
             w.lock().level2()
         });
         timer.egr().write(|w| w.ug().set_bit());
-        fault
-            .into_alternate::<3>()
-            .set_internal_resistor(Pull::Down);
-        input(inputs.0.into_alternate::<3>());
-        input(inputs.1.into_alternate::<3>());
+        let mut fault: Bkin = fault.into();
+        fault.set_internal_resistor(resistor(drive::COIL_FAULT.pull));
+        input::<Ch3>(inputs.0.into(), drive::COIL_IN1.pull);
+        input::<Ch4>(inputs.1.into(), drive::COIL_IN2.pull);
         Self {
             timer,
             is_driven: false,
         }
-    }
-
-    /// The timer, which [`start`](crate::ticks::start) starts.
-    pub(crate) fn timer(&self) -> &TIM8 {
-        &self.timer
     }
 
     /// Returns whether it was driven since the last tick: then there is a current to be read.
@@ -129,9 +132,9 @@ impl Coil {
 }
 
 /// An input of the driver: low where nothing drives it.
-fn input<const P: char, const N: u8>(pin: Pin<P, N, Alternate<3>>) {
-    let mut pin = pin.speed(Speed::Medium);
-    pin.set_internal_resistor(Pull::Down);
+fn input<P: PinPull + PinSpeed>(mut pin: P, pull: Pull) {
+    pin.set_speed(Speed::Medium);
+    pin.set_internal_resistor(resistor(pull));
 }
 
 fn counts(share: f32) -> u16 {

@@ -6,6 +6,8 @@ use crate::enable_line::EnableLine;
 use crate::flash::ParameterSectors;
 use crate::identity::identity;
 use crate::link::{BUFFERS, DmaBuffer, Link};
+use crate::pins::Ports;
+use crate::pins::comms::Pins;
 use crate::start::{Start, start};
 use crate::ticks::Quarters;
 use crate::usb::{self, PACKET_WORDS, UsbBusType};
@@ -24,13 +26,15 @@ pub struct CommsBoard {
     pub identity: Identity,
     /// Result of the self-test.
     pub self_test: SelfTest,
-    /// PB0, read back on PB1.
+    /// Crystal as measured, Hz.
+    pub crystal_hz: u32,
+    /// Enable line.
     pub line: EnableLine,
-    /// PC6, PC7.
+    /// Link to the drive.
     pub link: Link,
     /// Checksums of what the link receives.
     pub crc_unit: CrcUnit,
-    /// PA11, PA12.
+    /// USB.
     pub bus: UsbBusAllocator<UsbBusType>,
     /// Sectors 2 and 3 of flash.
     pub log: ParameterLog<ParameterSectors>,
@@ -48,24 +52,28 @@ impl CommsBoard {
         packets: &'static mut [u32; PACKET_WORDS],
         buffers: [DmaBuffer; BUFFERS],
     ) -> Self {
-        let mut rcc = clocks::start(chip.RCC);
+        let (mut rcc, crystal_hz) = clocks::start(chip.RCC, &chip.TIM11);
         let start = start(&mut rcc, &chip.RNG);
-        let a = chip.GPIOA.split(&mut rcc);
-        let b = chip.GPIOB.split(&mut rcc);
-        let c = chip.GPIOC.split(&mut rcc);
-        let line = EnableLine::new(b.pb0, b.pb1);
+        let pins = Pins::of(Ports {
+            a: chip.GPIOA.split(&mut rcc),
+            b: chip.GPIOB.split(&mut rcc),
+            c: chip.GPIOC.split(&mut rcc),
+        });
+        let line = EnableLine::new(pins.line, pins.line_back);
+        let wires = (pins.link_sends, pins.link_receives);
         let blocks = (chip.OTG_FS_GLOBAL, chip.OTG_FS_DEVICE, chip.OTG_FS_PWRCLK);
         let option_bytes = chip.FLASH.optcr().read().bits();
-        let (identity, self_test) = identity(Role::Comms, &start, option_bytes);
+        let (identity, self_test) = identity(Role::Comms, &start, option_bytes, crystal_hz);
         Self {
             start,
             identity,
             self_test,
+            crystal_hz,
             line,
             log: ParameterLog::open(ParameterSectors::new(chip.FLASH)),
-            link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), buffers, &mut rcc),
+            link: Link::new(&chip.USART6, chip.DMA2, wires, buffers, &mut rcc),
             crc_unit: CrcUnit::new(chip.CRC, &mut rcc),
-            bus: usb::bus(blocks, a.pa11, a.pa12, packets, &rcc),
+            bus: usb::bus(blocks, pins.usb_minus, pins.usb_plus, packets, &rcc),
             quarters: Quarters::start(chip.TIM2, &mut rcc),
             watchdog: chip.IWDG,
         }

@@ -4,8 +4,8 @@
 //!
 //! | way | of | pin | converter | for |
 //! |---|---|---|---|---|
-//! | sensor | a shunt between half A and the motor | PC0 | ADC1 | the current loop |
-//! | monitor | a shunt between half B and the motor | PC1 | ADC2 | checks; the comparator sees its amplifier, too |
+//! | sensor | a shunt between half A and the motor | PC0 | ADC1 | the current loop, checks |
+//! | monitor | a shunt between half B and the motor | PC1 | ADC2 | the current loop, checks; the comparator sees its amplifier, too |
 //! | supply | a divider by 16 | PC3 | ADC3 | checks |
 //! | temperature | MCP9700 on the motor: 0.5 V and 10 mV/°C | PA2 | ADC3 | checks |
 //! | joint | AS5600 on the hinge: its turn is the reference | PC2 | ADC3 | checks |
@@ -17,6 +17,9 @@
 //!
 //! The monitor's amplifier is wired the other way round: a shift of the
 //! reference that moved both alike would make the two differ.
+//!
+//! The loop takes the one whose half switched earlier
+//! ([`current_path`](crepitus_model::control::current_path)).
 //!
 //! A current is the mean of four conversions in a row, which halves the converter's
 //! noise: a regular one, which the timer starts, and the three of the injected group
@@ -37,42 +40,47 @@
 //! figures.
 
 use crate::bridge::QUIET_CLOCKS;
+use crate::clocks::APB2_TIMER_HZ;
 use crate::raw;
+use crepitus_device::board::analog::{self, CLOCK_HZ, INPUTS};
+use crepitus_device::board::{self, COIL_CURRENT, MOTOR_CURRENT, MOTOR_TEMPERATURE};
 use crepitus_device::drive::slow_checks::SlowInput;
-use stm32f4xx_hal::gpio::{PA2, PA3, PC0, PC1, PC2, PC3};
+use stm32f4xx_hal::gpio::{Analog, ErasedPin};
 use stm32f4xx_hal::pac::adc1::RegisterBlock as Registers;
 use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, ADC2, ADC3};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
-/// PC0.
-const SENSOR: u8 = 10;
-
-/// PC1.
-const MONITOR: u8 = 11;
-
-/// PC3, PA2, PC2.
-const SUPPLY: u8 = 13;
-const MOTOR: u8 = 2;
-const JOINT: u8 = 12;
-
-/// PA3.
-const COIL: u8 = 3;
+/// Channels of the inputs.
+const SENSOR: u8 = analog::SENSOR.channel;
+const MONITOR: u8 = analog::MONITOR.channel;
+const SUPPLY: u8 = analog::SUPPLY.channel;
+const MOTOR: u8 = analog::MOTOR.channel;
+const JOINT: u8 = analog::JOINT.channel;
+const COIL: u8 = analog::COIL.channel;
 
 /// Divider of the supply.
-const SUPPLY_SHARE: f32 = 16.0;
+const SUPPLY_SHARE: f32 = single(board::SUPPLY.share());
 
 /// Temperature sensor of the motor: V at 0 °C, and °C for a volt.
-const FREEZING_V: f32 = 0.5;
-const CELSIUS_PER_VOLT: f32 = 100.0;
+const FREEZING_V: f32 = single(MOTOR_TEMPERATURE.freezing_v);
+const CELSIUS_PER_VOLT: f32 = single(MOTOR_TEMPERATURE.celsius_per_volt);
 
 /// Supply and reference, V.
-const REFERENCE_V: f32 = 3.3;
+const REFERENCE_V: f32 = single(board::REFERENCE_V);
 
 /// Gain of shunt and amplifier, V/A.
-const VOLTS_PER_AMPERE: f32 = 20.0 * 0.033;
+const VOLTS_PER_AMPERE: f32 = MOTOR_CURRENT.volts_per_ampere_single();
 
 /// Gain of the coil's shunt and amplifier, V/A.
-const COIL_VOLTS_PER_AMPERE: f32 = 20.0 * 0.025;
+const COIL_VOLTS_PER_AMPERE: f32 = COIL_CURRENT.volts_per_ampere_single();
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "values of parts, for the controller's arithmetic"
+)]
+const fn single(value: f64) -> f32 {
+    value as f32
+}
 
 /// Counts of the whole range.
 const COUNTS: f32 = 4096.0;
@@ -82,9 +90,10 @@ pub(crate) const SAMPLES: u8 = 4;
 
 /// Clocks of the core in one of the converters: 168 MHz / 21 MHz.
 const CONVERTER_CLOCK: u16 = 8;
+const _: () = assert!(CONVERTER_CLOCK as u32 * CLOCK_HZ == APB2_TIMER_HZ);
 
 /// Clocks of the core to sample a current, and to sample and convert it.
-const SAMPLING: u16 = 3 * CONVERTER_CLOCK;
+const SAMPLING: u16 = analog::SENSOR.sampling_clocks * CONVERTER_CLOCK;
 const CONVERSION: u16 = SAMPLING + 12 * CONVERTER_CLOCK;
 
 /// Time from the first sampling to the end of the last conversion, and to the middle of all
@@ -92,11 +101,12 @@ const CONVERSION: u16 = SAMPLING + 12 * CONVERTER_CLOCK;
 pub(crate) const TO_END: u16 = SAMPLES as u16 * CONVERSION;
 pub(crate) const TO_MIDDLE: u16 = u16::midpoint(0, TO_END - CONVERSION + SAMPLING);
 
-/// The slow input and the coil's current: fifteen clocks of sampling each.
-const SLOW_TO_END: u16 = 2 * (15 + 12) * CONVERTER_CLOCK;
+/// The slow input and the coil's current.
+const SLOW_TO_END: u16 =
+    (analog::SUPPLY.sampling_clocks + analog::COIL.sampling_clocks + 2 * 12) * CONVERTER_CLOCK;
 
-/// The most that the trigger is late: three clocks of the converters, and the start
-/// of one timer after another, a store to APB1.
+/// The most that the trigger is late: three clocks of the converters, and that of the timer, which takes
+/// up the trigger of another in some clocks of APB1.
 const LATE: u16 = 3 * CONVERTER_CLOCK + 16;
 
 // Nothing switches while they convert.
@@ -114,13 +124,11 @@ pub struct Converters {
 }
 
 impl Converters {
-    /// Converters that TIM3 triggers together.
+    /// Converters that TIM3 triggers together, with the pins of their [inputs](INPUTS).
     pub fn new(
         (sensor, monitor, slow): (ADC1, ADC2, ADC3),
         common: &ADC_COMMON,
-        pins: (PC0, PC1),
-        slow_pins: (PC3, PA2, PC2),
-        coil: PA3,
+        _: [ErasedPin<Analog>; INPUTS.len()],
         rcc: &mut Rcc,
     ) -> Self {
         ADC1::enable(rcc);
@@ -128,20 +136,16 @@ impl Converters {
         ADC3::enable(rcc);
         // One reset for all three.
         ADC1::reset(rcc);
-        pins.0.into_analog();
-        pins.1.into_analog();
-        slow_pins.0.into_analog();
-        slow_pins.1.into_analog();
-        slow_pins.2.into_analog();
-        coil.into_analog();
         // 84 MHz / 4 = 21 MHz.
         common.ccr().write(|w| w.adcpre().div4());
-        sensor.smpr1().write(|w| w.smp10().cycles3());
-        monitor.smpr1().write(|w| w.smp11().cycles3());
-        slow.smpr1()
-            .write(|w| w.smp12().cycles15().smp13().cycles15());
-        slow.smpr2()
-            .write(|w| w.smp2().cycles15().smp3().cycles15());
+        for input in INPUTS {
+            let converter = match input.converter {
+                1 => &*sensor,
+                2 => &*monitor,
+                _ => &*slow,
+            };
+            raw::converter_sampling(converter, input.channel, input.sampling_code());
+        }
         raw::converter_channel(&slow, SUPPLY);
         raw::converter_channel(&sensor, SENSOR);
         raw::converter_channel(&monitor, MONITOR);

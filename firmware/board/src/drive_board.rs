@@ -10,6 +10,8 @@ use crate::enable_line::{EnableLine, OtherLine};
 use crate::encoder::Encoder;
 use crate::identity::identity;
 use crate::link::{BUFFERS, DmaBuffer, Link};
+use crate::pins::Ports;
+use crate::pins::drive::Pins;
 use crate::start::{Start, start};
 use crate::ticks::{BeginOfTick, FreeClock, MiddleOfTick};
 use crepitus_device::self_test::SelfTest;
@@ -25,19 +27,21 @@ pub struct DriveBoard {
     pub identity: Identity,
     /// Result of the self-test.
     pub self_test: SelfTest,
-    /// PB0, read back on PB1.
+    /// Crystal as measured, Hz.
+    pub crystal_hz: u32,
+    /// Enable line.
     pub line: EnableLine,
-    /// PB10: that of comms.
+    /// That of comms.
     pub comms_line: OtherLine,
-    /// PA8, PB13, PA9, PB14; break on PB12.
+    /// Bridge of the motor.
     pub bridge: Bridge,
-    /// PC8, PC9; break on PA6.
+    /// Driver of the vibration actuator's coil.
     pub coil: Coil,
-    /// PC0, PC1; PC3, PA2, PC2; PA3.
+    /// Currents and what changes slowly.
     pub converters: Converters,
-    /// PA0, PA1.
+    /// Encoder of the motor.
     pub encoder: Encoder,
-    /// PC6, PC7.
+    /// Link to comms.
     pub link: Link,
     /// Checksums of frames.
     pub crc_unit: CrcUnit,
@@ -57,41 +61,57 @@ impl DriveBoard {
     /// Sets up the board with outputs off; ticks begin with
     /// [`ticks::start`](crate::ticks::start).
     pub fn new(chip: Peripherals, buffers: [DmaBuffer; BUFFERS]) -> Self {
-        let mut rcc = clocks::start(chip.RCC);
+        let (mut rcc, crystal_hz) = clocks::start(chip.RCC, &chip.TIM11);
         let start = start(&mut rcc, &chip.RNG);
-        let a = chip.GPIOA.split(&mut rcc);
-        let b = chip.GPIOB.split(&mut rcc);
-        let c = chip.GPIOC.split(&mut rcc);
+        let pins = Pins::of(Ports {
+            a: chip.GPIOA.split(&mut rcc),
+            b: chip.GPIOB.split(&mut rcc),
+            c: chip.GPIOC.split(&mut rcc),
+        });
         // First what switches the motor.
-        let line = EnableLine::new(b.pb0, b.pb1);
+        let line = EnableLine::new(pins.line, pins.line_back);
         let bridge = Bridge::new(
             chip.TIM1,
-            (a.pa8, b.pb13),
-            (a.pa9, b.pb14),
-            b.pb12,
+            (pins.upper_a, pins.lower_a),
+            (pins.upper_b, pins.lower_b),
+            pins.breaks,
             &mut rcc,
         );
-        let coil = Coil::new(chip.TIM8, (c.pc8, c.pc9), a.pa6, &mut rcc);
+        let inputs = (pins.coil_in1, pins.coil_in2);
+        let coil = Coil::new(chip.TIM8, inputs, pins.coil_fault, &mut rcc);
+        let (sends, receives) = (pins.link_sends, pins.link_receives);
         let option_bytes = chip.FLASH.optcr().read().bits();
-        let (identity, self_test) = identity(Role::Drive, &start, option_bytes);
+        let (identity, self_test) = identity(Role::Drive, &start, option_bytes, crystal_hz);
         Self {
             start,
             identity,
             self_test,
+            crystal_hz,
             line,
-            comms_line: OtherLine::new(b.pb10),
+            comms_line: OtherLine::new(pins.comms_line),
             bridge,
             coil,
             converters: Converters::new(
                 (chip.ADC1, chip.ADC2, chip.ADC3),
                 &chip.ADC_COMMON,
-                (c.pc0, c.pc1),
-                (c.pc3, a.pa2, c.pc2),
-                a.pa3,
+                [
+                    pins.sensor.into_analog().erase(),
+                    pins.monitor.into_analog().erase(),
+                    pins.supply.into_analog().erase(),
+                    pins.motor.into_analog().erase(),
+                    pins.joint.into_analog().erase(),
+                    pins.coil.into_analog().erase(),
+                ],
                 &mut rcc,
             ),
-            encoder: Encoder::new(chip.TIM5, a.pa0, a.pa1, &mut rcc),
-            link: Link::new(&chip.USART6, chip.DMA2, (c.pc6, c.pc7), buffers, &mut rcc),
+            encoder: Encoder::new(chip.TIM5, pins.encoder_a, pins.encoder_b, &mut rcc),
+            link: Link::new(
+                &chip.USART6,
+                chip.DMA2,
+                (sends, receives),
+                buffers,
+                &mut rcc,
+            ),
             crc_unit: CrcUnit::new(chip.CRC, &mut rcc),
             black_box: BlackBox::new(),
             begin: BeginOfTick::new(chip.TIM4, &mut rcc),

@@ -4,10 +4,13 @@
 //! The resistor that pulls it down on the power board keeps it off while a
 //! controller is in reset, off, or without a program.
 
+use crepitus_device::board::pins::{comms, drive};
 use stm32f4xx_hal::gpio::{Input, Output, PB0, PB1, PB10};
 
 /// The pin of GPIOB that drives the line, on both boards.
-pub(crate) const PIN: u8 = 0;
+pub(crate) const PIN: u8 = drive::LINE.pin.number;
+const _: () = assert!(drive::LINE.pin.port == 'B' && comms::LINE.pin.port == 'B');
+const _: () = assert!(comms::LINE.pin.number == PIN);
 
 /// The line.
 #[derive(Debug)]

@@ -4,7 +4,10 @@
 //! eight equal samples at 21 MHz, 0.38 µs; at 420 deg/s of the joint edges are
 //! 4.9 µs apart.
 
-use stm32f4xx_hal::gpio::{PA0, PA1, Pull};
+use crate::pins::resistor;
+use crepitus_device::board::pins::drive;
+use stm32f4xx_hal::gpio::PinPull;
+use stm32f4xx_hal::gpio::alt::tim5::{Ch1, Ch2};
 use stm32f4xx_hal::pac::TIM5;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
@@ -13,11 +16,12 @@ pub struct Encoder(TIM5);
 
 impl Encoder {
     /// Starts counting at zero.
-    pub fn new(timer: TIM5, a: PA0, b: PA1, rcc: &mut Rcc) -> Self {
+    pub fn new(timer: TIM5, a: impl Into<Ch1>, b: impl Into<Ch2>, rcc: &mut Rcc) -> Self {
         TIM5::enable(rcc);
         TIM5::reset(rcc);
-        a.into_alternate::<2>().set_internal_resistor(Pull::Up);
-        b.into_alternate::<2>().set_internal_resistor(Pull::Up);
+        let (mut a, mut b): (Ch1, Ch2) = (a.into(), b.into());
+        a.set_internal_resistor(resistor(drive::ENCODER_A.pull));
+        b.set_internal_resistor(resistor(drive::ENCODER_B.pull));
         timer.ccmr1_input().write(|w| {
             w.cc1s().ti1().ic1f().fdts_div4_n8();
             w.cc2s().ti2().ic2f().fdts_div4_n8()

@@ -2,6 +2,7 @@
 
 use crate::raw;
 use crate::start::Start;
+use crepitus_device::board::{CRYSTAL_HZ, crystal_near};
 use crepitus_device::self_test::SelfTest;
 use crepitus_protocol::frame::CRC;
 use crepitus_protocol::management::{Identity, Role};
@@ -14,7 +15,12 @@ const SEAL_AT: usize = 0x1c;
 /// The identity in a hello, and the self-test. The checksum covers the
 /// first 512 bytes of flash, with the seal as 0, then code, constants and initial
 /// values: that of `crepitus-seal`. Takes a few milliseconds.
-pub fn identity(role: Role, start: &Start, option_bytes: u32) -> (Identity, SelfTest) {
+pub fn identity(
+    role: Role,
+    start: &Start,
+    option_bytes: u32,
+    crystal_hz: u32,
+) -> (Identity, SelfTest) {
     let vectors = raw::vectors();
     let (head, rest) = vectors.split_at(SEAL_AT);
     let (seal, tail) = rest.split_first_chunk().unwrap_or((&[0; 4], rest));
@@ -23,7 +29,9 @@ pub fn identity(role: Role, start: &Start, option_bytes: u32) -> (Identity, Self
         digest.update(part);
     }
     let image = digest.finalize();
-    let self_test = SelfTest::of(u32::from_le_bytes(*seal), image, option_bytes);
+    let seal = u32::from_le_bytes(*seal);
+    let has_its_crystal = crystal_near(crystal_hz) == Some(CRYSTAL_HZ);
+    let self_test = SelfTest::of(seal, image, option_bytes, has_its_crystal);
     (of(role, start, image), self_test)
 }
 

@@ -1,11 +1,12 @@
 //! # Peripherals of the two boards
 //!
-//! Both are an STM32F405 with a crystal of 8 MHz. `docs/hardware.md` has the
-//! wiring, [`drive_board`] and [`comms_board`] the pins.
+//! Both are an STM32F405. Pins, crystal and values of the parts are those of `crepitus_device::board`;
+//! [`drive_board`] and [`comms_board`] put the parts together.
 //!
 //! | part | on | file |
 //! |---|---|---|
 //! | 168 MHz from the crystal, 48 MHz for USB | both | [`clocks`] |
+//! | frequency of the crystal, by the internal oscillator | both | [`crystal`] |
 //! | reset cause and start counter | both | [`start`], [`reset_cause`], [`reset_record`] |
 //! | post-mortem record | both | [`crash`] |
 //! | identity | both | [`identity`] |
@@ -13,6 +14,7 @@
 //! | memory protection: map, and write access to the outputs | both | [`mpu`] |
 //! | enable line, with read-back | both | [`enable_line`] |
 //! | link: UART with DMA both ways | both | [`link`] |
+//! | cycles of the tasks, high-water mark of the stack | both | [`task_clock`], [`stack_mark`] |
 //! | watchdog, fed when every task has run | both | [`watchdog`] |
 //! | timers of the tasks | both | [`ticks`] |
 //! | bridge: PWM with dead time and break | drive | [`bridge`] |
@@ -46,6 +48,8 @@ mod crash_record;
 #[cfg(target_os = "none")]
 pub mod crc_unit;
 #[cfg(target_os = "none")]
+mod crystal;
+#[cfg(target_os = "none")]
 pub mod drive_board;
 #[cfg(target_os = "none")]
 pub mod enable_line;
@@ -62,13 +66,19 @@ pub mod link;
 #[cfg(target_os = "none")]
 pub mod mpu;
 #[cfg(target_os = "none")]
+mod pins;
+#[cfg(target_os = "none")]
 mod raw;
 #[cfg(target_os = "none")]
 pub use raw::sleep;
 #[cfg(target_os = "none")]
+pub mod stack_mark;
+#[cfg(target_os = "none")]
 pub mod start;
 #[cfg(target_os = "none")]
 pub mod stop;
+#[cfg(target_os = "none")]
+pub mod task_clock;
 #[cfg(target_os = "none")]
 pub mod ticks;
 #[cfg(target_os = "none")]

@@ -1,8 +1,8 @@
 //! The link between the controllers: USART6 at 4.2 Mbaud, DMA both ways.
 //!
 //! ```text
-//! PC7 ─> USART6 ─> DMA2 stream 1 ─> ring of 2 KB (4.9 ms)        ─> Link::take
-//! PC6 <─ USART6 <─ DMA2 stream 6 <─ a frame, and the one after it <─ Link::send
+//! RX  ─> USART6 ─> DMA2 stream 1 ─> ring of 2 KB (4.9 ms)        ─> Link::take
+//! TX  <─ USART6 <─ DMA2 stream 6 <─ a frame, and the one after it <─ Link::send
 //! ```
 //!
 //! 84 MHz / 20 = 4.2 MHz exactly, with 16 samples a bit (1 + 4/16).
@@ -16,10 +16,15 @@
 //! line: clearing its flag reads the data register, which now and then takes
 //! a byte from the DMA.
 
+use crate::clocks::APB2_HZ;
+use crate::pins::resistor;
 use crate::raw;
 use core::sync::atomic::{AtomicU8, Ordering, fence};
+use crepitus_device::board::LINK_BAUD;
+use crepitus_device::board::pins::drive::LINK_RECEIVES;
 use crepitus_protocol::frame::{DELIMITER, EncodedFrame, FRAME_BYTES, Frame, FrameBuffer};
-use stm32f4xx_hal::gpio::{PC6, PC7, Pull, Speed};
+use stm32f4xx_hal::gpio::alt::usart6::{Rx, Tx};
+use stm32f4xx_hal::gpio::{PinPull, PinSpeed, Speed};
 use stm32f4xx_hal::pac::{DMA2, USART6};
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 
@@ -44,11 +49,16 @@ const CHANNEL: u8 = 5;
 // Written by DMA, so in RAM that it reaches, and atomic.
 static RING: [AtomicU8; RING_BYTES] = [const { AtomicU8::new(0) }; RING_BYTES];
 
+// 1 + 4/16 clocks of APB2 a sample.
+const _: () = assert!(APB2_HZ == 20 * LINK_BAUD);
+
 /// The link.
 pub struct Link {
     dma: DMA2,
     /// The next byte of the ring to be taken.
     next: usize,
+    /// The place after the last one that may be.
+    end: usize,
     spare: [Option<DmaBuffer>; BUFFERS],
     /// Pending frames in order; never more than there are buffers.
     waiting: [Option<EncodedFrame<DmaBuffer>>; BUFFERS],
@@ -60,7 +70,7 @@ impl Link {
     pub fn new(
         usart: &USART6,
         dma: DMA2,
-        (sends, receives): (PC6, PC7),
+        (sends, receives): (impl Into<Tx>, impl Into<Rx>),
         buffers: [DmaBuffer; BUFFERS],
         rcc: &mut Rcc,
     ) -> Self {
@@ -69,11 +79,11 @@ impl Link {
         DMA2::enable(rcc);
         DMA2::reset(rcc);
         // A bit is 238 ns; at the slowest setting an edge may take 100.
-        sends.into_alternate::<8>().set_speed(Speed::Medium);
+        let mut sends: Tx = sends.into();
+        sends.set_speed(Speed::Medium);
         // Without a sender the line is idle.
-        receives
-            .into_alternate::<8>()
-            .set_internal_resistor(Pull::Up);
+        let mut receives: Rx = receives.into();
+        receives.set_internal_resistor(resistor(LINK_RECEIVES.pull));
         let data = usart.dr().as_ptr();
         let stream = dma.st(RECEIVE);
         raw::dma_register(stream, data);
@@ -100,6 +110,7 @@ impl Link {
         Self {
             dma,
             next: 0,
+            end: 0,
             spare: buffers.map(Some),
             waiting: [const { None }; BUFFERS],
             sending: None,
@@ -112,11 +123,22 @@ impl Link {
         self.start_next();
     }
 
-    /// Number of received bytes not yet taken: 2,047 at most.
+    /// Looks how far the ring is filled. Some 50 clocks before bytes are taken, so that they are in memory then; one
+    /// that comes meanwhile is left for the next run.
+    pub fn look(&mut self) {
+        self.end = self.end_of_ring();
+    }
+
+    /// Number of received bytes not yet taken, as of the last [`Self::look`]: 2,047 at most.
     pub fn received(&self) -> usize {
+        self.end.wrapping_sub(self.next) % RING_BYTES
+    }
+
+    /// The place after the newest byte that NDTR counts. It does so when the byte is read from the USART
+    /// (RM0090, DMA_SxNDTR); some clocks later it is in memory.
+    fn end_of_ring(&self) -> usize {
         let left = usize::from(self.dma.st(RECEIVE).ndtr().read().ndt().bits());
-        let end = RING_BYTES.wrapping_sub(left);
-        end.wrapping_sub(self.next) % RING_BYTES
+        RING_BYTES.wrapping_sub(left)
     }
 
     /// The oldest received byte; while there is none, what was there before.

@@ -9,8 +9,11 @@
 //! | [`mpu_region`], [`mpu_attributes`], [`mpu_control`] | change no memory; an access that is forbidden faults, and never returns |
 //! | [`dma_register`], [`dma_destination`] | the stream writes a `'static` buffer of atomic bytes in RAM that DMA reaches, within the length that `link.rs` sets |
 //! | [`dma_source`] | the stream reads a buffer that `link.rs` owns and keeps until the stream is done, in RAM that DMA reaches, within its length |
-//! | [`converter_channel`], [`injected_channel`] | a channel that the converter has, at most four times |
+//! | [`converter_channel`], [`injected_channel`], [`converter_sampling`] | a channel that the converter has, at most four times, and one of its eight sampling times |
+//! | [`crystal_to_timer`] | a value of the option register that the manual has |
 //! | [`sleep`] | the assembly declares that the FPU's registers are lost |
+//! | [`set_cycle_count`] | a number, by which only the tasks' times are measured |
+//! | [`paint_stack`] | the stack's RAM below its pointer, which nobody has: interrupts are disabled, and the function calls none |
 //! | [`stack`], [`fault_registers`] | words of the stack's RAM, and registers whose reading has no effect |
 #![allow(unsafe_code)]
 
@@ -156,6 +159,25 @@ fn address(address: usize) -> u32 {
     u32::try_from(address).unwrap_or_default()
 }
 
+/// Connects the divided crystal to the first input of TIM11.
+pub(crate) fn crystal_to_timer(timer: &pac::TIM11) {
+    // SAFETY: see the table.
+    timer.or().write(|w| unsafe { w.rmp().bits(0b10) });
+}
+
+/// Sets the sampling time of a channel after a reset, by its code.
+pub(crate) fn converter_sampling(converter: &pac::adc1::RegisterBlock, channel: u8, code: u8) {
+    let time = u32::from(code & 7) << (3 * (channel % 10));
+    // SAFETY: see the table.
+    if channel < 10 {
+        let register = converter.smpr2();
+        register.modify(|r, w| unsafe { w.bits(r.bits() | time) });
+    } else {
+        let register = converter.smpr1();
+        register.modify(|r, w| unsafe { w.bits(r.bits() | time) });
+    }
+}
+
 /// Selects the channel that is converted.
 pub(crate) fn converter_channel(converter: &pac::adc1::RegisterBlock, channel: u8) {
     // SAFETY: see the table.
@@ -193,8 +215,33 @@ pub fn sleep() {
     }
 }
 
+/// Sets the core's cycle counter.
+#[inline]
+pub(crate) fn set_cycle_count(cycles: u32) {
+    // SAFETY: see the table.
+    unsafe { (*cortex_m::peripheral::DWT::PTR).cyccnt.write(cycles) };
+}
+
 /// The stack's RAM.
-const CCM: core::ops::Range<usize> = 0x1000_0000..0x1001_0000;
+pub(crate) const STACK: core::ops::Range<u32> = 0x1000_0000..0x1001_0000;
+const CCM: core::ops::Range<usize> = STACK.start as usize..STACK.end as usize;
+
+/// Value of a word of the stack that was never written.
+pub(crate) const PAINT: u32 = 0xcccc_cccc;
+
+/// Distance of the paint from the stack's pointer, bytes.
+const PAINT_DISTANCE: usize = 128;
+
+/// Paints the stack below the pointer, before there are tasks.
+#[inline(never)]
+pub(crate) fn paint_stack() {
+    let end = (cortex_m::register::msp::read() as usize).saturating_sub(PAINT_DISTANCE);
+    for address in (CCM.start..end.min(CCM.end)).step_by(size_of::<u32>()) {
+        let place = core::ptr::with_exposed_provenance_mut::<u32>(address);
+        // SAFETY: see the table.
+        unsafe { place.write_volatile(PAINT) };
+    }
+}
 
 /// The stack's words from an address up; 0 where there is no stack.
 pub(crate) fn stack<const N: usize>(begin: u32) -> [u32; N] {

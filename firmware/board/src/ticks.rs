@@ -5,13 +5,13 @@
 //!       ╱  ╲
 //! TIM4  |          sample_encoder, at the bottom, and after it render_torque
 //! TIM3     |       the converters, in the middle of the top: no switching near
-//!           |      command_motor, 6.7 µs later: the currents are converted, the torque is ready
+//!           |      command_motor, 7.4 µs later: the currents are converted, the torque is ready
 //! TIM8   as TIM1: the driver of the coil
 //! TIM2  ...        µs, for the time between two ticks
 //! ```
 //!
 //! All count the same crystal and are never stopped: ticks continue whatever the
-//! bridge does. The first four start together.
+//! bridge does. The first four start together: TIM1's enable is the trigger (ITR0) of the others.
 
 use crate::bridge::Bridge;
 use crate::clocks::APB1_TIMER_HZ;
@@ -31,10 +31,10 @@ const COUNT_CLOCKS: u16 = 2;
 /// begin 1.14 µs before it.
 const CONVERTER_EARLY: u16 = converter::TO_MIDDLE / COUNT_CLOCKS;
 
-/// Counts from the converters' start to `command_motor`: 6.7 µs. All conversions take 2.86; the
-/// rest is time for `render_torque`, whose first tick after a commit of everything takes some 28 µs. What
-/// is commanded is loaded at the bottom, 20 µs later, whenever it came.
-const CONVERSION: u16 = 563;
+/// Counts from the converters' start to `command_motor`: 7.4 µs. All conversions take 2.86; the
+/// rest is time for `render_torque`, whose first tick after a commit of everything takes some 30 µs. What
+/// is commanded is loaded at the bottom, 19 µs later, whenever it came.
+const CONVERSION: u16 = 620;
 const _: () = assert!(CONVERSION * COUNT_CLOCKS > converter::TO_END + 48);
 
 /// Clocks of TIM2 in a microsecond.
@@ -59,6 +59,7 @@ impl MiddleOfTick {
         timer.ccr1().write(|w| w.ccr().set(CONVERSION));
         // The timer's overflow starts the converters, its first channel the task.
         timer.cr2().write(|w| w.mms().update());
+        timer.smcr().write(|w| w.ts().itr0().sms().trigger_mode());
         timer.dier().write(|w| w.cc1ie().set_bit());
         Self(timer)
     }
@@ -70,12 +71,18 @@ impl MiddleOfTick {
 }
 
 impl BeginOfTick {
+    /// Clocks of the core since the tick has begun.
+    pub fn clocks(&self) -> u32 {
+        u32::from(self.0.cnt().read().cnt().bits()) * u32::from(COUNT_CLOCKS)
+    }
+
     /// A timer that waits for [`start`].
     pub fn new(timer: TIM4, rcc: &mut Rcc) -> Self {
         TIM4::enable(rcc);
         TIM4::reset(rcc);
         timer.arr().write(|w| w.arr().set(COUNTS - 1));
         timer.dier().write(|w| w.uie().set_bit());
+        timer.smcr().write(|w| w.ts().itr0().sms().trigger_mode());
         Self(timer)
     }
 
@@ -85,15 +92,10 @@ impl BeginOfTick {
     }
 }
 
-/// Starts the four timers within some clocks of the core: one store after another. That
-/// of the coil last, as nothing is measured against it.
-pub fn start(bridge: &Bridge, middle: &MiddleOfTick, begin: &BeginOfTick, coil: &Coil) {
-    cortex_m::interrupt::free(|_| {
-        bridge.timer().cr1().modify(|_, w| w.cen().set_bit());
-        middle.0.cr1().write(|w| w.cen().set_bit());
-        begin.0.cr1().write(|w| w.cen().set_bit());
-        coil.timer().cr1().modify(|_, w| w.cen().set_bit());
-    });
+/// Starts the four timers by one store, whatever the core waits for: that of the bridge triggers the
+/// others, which follow some clocks later, always as many.
+pub fn start(bridge: &Bridge, _: &MiddleOfTick, _: &BeginOfTick, _: &Coil) {
+    bridge.timer().cr1().modify(|_, w| w.cen().set_bit());
 }
 
 /// A clock that runs by itself: µs, for the drive.

@@ -1,7 +1,7 @@
 //! USB: the full-speed controller on PA11 and PA12.
 
 use crepitus_device::usb_port::UsbIdentity;
-use stm32f4xx_hal::gpio::{PA11, PA12};
+use stm32f4xx_hal::gpio::alt::otg_fs::{Dm, Dp};
 use stm32f4xx_hal::otg_fs::{USB, UsbBus};
 use stm32f4xx_hal::pac::{OTG_FS_DEVICE, OTG_FS_GLOBAL, OTG_FS_PWRCLK};
 use stm32f4xx_hal::rcc::Rcc;
@@ -22,8 +22,8 @@ pub type Blocks = (OTG_FS_GLOBAL, OTG_FS_DEVICE, OTG_FS_PWRCLK);
 /// The bus.
 pub fn bus(
     blocks: Blocks,
-    minus: PA11,
-    plus: PA12,
+    minus: impl Into<Dm>,
+    plus: impl Into<Dp>,
     packets: &'static mut [u32; PACKET_WORDS],
     rcc: &Rcc,
 ) -> UsbBusAllocator<UsbBusType> {

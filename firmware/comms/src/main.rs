@@ -29,14 +29,19 @@ mod app {
     use board::enable_line::EnableLine;
     use board::flash::ParameterSectors;
     use board::link::{BUFFERS, EMPTY_BUFFER, Link};
+    use board::stack_mark::{self, StackMark};
+    use board::task_clock::{Run, TaskClock};
     use board::ticks::Quarters;
     use board::usb::{DIGITS, PACKET_WORDS, UsbBusAllocator, UsbBusType, identity};
     use board::watchdog::{TaskCheckins, Watchdog};
     use core::mem::MaybeUninit;
     use crepitus_device::comms::{Boot, Comms, Inputs};
     use crepitus_device::parameter_log::ParameterLog;
+    use crepitus_device::self_test::SelfTest;
+    use crepitus_device::task_times::Reports;
     use crepitus_device::usb_port::{HostBytes, UsbPort};
     use crepitus_protocol::frame::FrameBuffer;
+    use crepitus_protocol::task_times::TaskTimes;
     use crepitus_protocol::{Fault, Revision, Values};
     use stm32f4xx_hal::pac::Interrupt;
 
@@ -49,11 +54,15 @@ mod app {
     /// Bytes of the link that are taken in at a time.
     const RUN_BYTES: usize = 32;
 
-    /// Tasks that check in with the watchdog.
+    /// Tasks that check in with the watchdog, and whose cycles are counted: in the order of the protocol's
+    /// `COMMS_TASKS`.
     const TICKED: usize = 0;
     const USB_POLLED: usize = 1;
     const LINKED: usize = 2;
     const TASKS: usize = 3;
+
+    /// Runs of `tick` between two reports of the cycles: a second.
+    const REPORT_RUNS: u32 = 4_000;
 
     /// Timeout of `idle` in runs of `link`: at most 250 ms.
     const IDLE_TIMEOUT_RUNS: u32 = 1_000;
@@ -63,6 +72,7 @@ mod app {
         comms: &'static mut Comms,
         save: Option<(Revision, Values)>,
         checkins: TaskCheckins<TASKS>,
+        task_clock: TaskClock<TASKS>,
     }
 
     #[local]
@@ -74,6 +84,7 @@ mod app {
         crc_unit: CrcUnit,
         log: ParameterLog<ParameterSectors>,
         watchdog: Watchdog,
+        stack: StackMark,
     }
 
     #[init(local = [
@@ -84,7 +95,8 @@ mod app {
         packets: [u32; PACKET_WORDS] = [0; PACKET_WORDS],
         digits: [u8; DIGITS] = [0; DIGITS]
     ])]
-    fn init(cx: init::Context) -> (Shared, Local) {
+    fn init(mut cx: init::Context) -> (Shared, Local) {
+        let stack = StackMark::paint();
         board::mpu::protect_comms(&cx.core.MPU);
         let board = CommsBoard::new(cx.device, cx.local.packets, cx.local.buffers.each_mut());
         let start = board.start;
@@ -95,6 +107,9 @@ mod app {
             start.before.reason.name(),
             start.before.detail,
         );
+        if board.self_test == SelfTest::CrystalWrong {
+            defmt::error!("comms: a crystal of {=u32} Hz", board.crystal_hz);
+        }
         let comms = cx.local.comms.write(Comms::new(&Boot {
             identity: board.identity,
             self_test: board.self_test,
@@ -113,6 +128,7 @@ mod app {
                 comms,
                 save: None,
                 checkins: TaskCheckins::new(),
+                task_clock: TaskClock::start(&mut cx.core.DCB, &mut cx.core.DWT),
             },
             Local {
                 quarters: board.quarters,
@@ -122,6 +138,7 @@ mod app {
                 crc_unit: board.crc_unit,
                 log: board.log,
                 watchdog: Watchdog::start(board.watchdog, IDLE_TIMEOUT_RUNS),
+                stack,
             },
         )
     }
@@ -129,15 +146,16 @@ mod app {
     #[task(
         binds = TIM2, priority = 3,
         local = [quarters, line, quarter: u8 = 0],
-        shared = [comms, save, &checkins],
+        shared = [comms, save, &checkins, &task_clock],
     )]
     fn tick(mut cx: tick::Context) {
+        let run = Run::begin();
         cx.local.quarters.acknowledge();
         cx.shared.checkins.check_in(TICKED);
         rtic::pend(LINK);
         *cx.local.quarter = (*cx.local.quarter + 1) % 4;
         if *cx.local.quarter != 0 {
-            return;
+            return cx.shared.task_clock.end(TICKED, run);
         }
         let inputs = Inputs {
             enable_is_on: cx.local.line.is_on(),
@@ -151,20 +169,29 @@ mod app {
             board::stop::reboot();
         }
         rtic::pend(USB);
+        cx.shared.task_clock.end(TICKED, run);
     }
 
-    #[task(binds = OTG_FS, priority = 2, local = [port], shared = [comms, &checkins])]
+    #[task(binds = OTG_FS, priority = 2, local = [port], shared = [comms, &checkins, &task_clock])]
     fn usb(mut cx: usb::Context) {
+        let run = Run::begin();
         cx.shared.checkins.check_in(USB_POLLED);
         let port = cx.local.port;
         cx.shared.comms.lock(|comms| port.poll(*comms));
         port.drop_control_leftover();
+        cx.shared.task_clock.end(USB_POLLED, run);
     }
 
-    #[task(binds = DMA2_STREAM6, priority = 1, local = [link, crc_unit, watchdog], shared = [comms, &checkins])]
+    #[task(
+        binds = DMA2_STREAM6, priority = 1,
+        local = [link, crc_unit, watchdog],
+        shared = [comms, &checkins, &task_clock]
+    )]
     fn link(mut cx: link::Context) {
+        let begun = Run::begin();
         let (link, unit) = (cx.local.link, cx.local.crc_unit);
         link.acknowledge();
+        link.look();
         cx.shared.checkins.check_in(LINKED);
         cx.local.watchdog.feed(cx.shared.checkins);
         let mut run = [0; RUN_BYTES];
@@ -182,9 +209,13 @@ mod app {
         if cx.shared.comms.lock(|comms| !comms.to_send().is_empty()) {
             rtic::pend(USB);
         }
+        cx.shared.task_clock.end(LINKED, begun);
     }
 
-    #[idle(local = [log], shared = [comms, save, &checkins])]
+    #[idle(
+        local = [log, stack, reports: Reports = Reports::new(REPORT_RUNS)],
+        shared = [comms, save, &checkins, &task_clock]
+    )]
     fn idle(mut cx: idle::Context) -> ! {
         let mut reported = None;
         loop {
@@ -205,6 +236,17 @@ mod app {
                     fault,
                     revision.0
                 );
+            }
+            cx.local.stack.advance();
+            let tasks = cx.shared.task_clock.tasks();
+            if let Some(tasks) = cx.local.reports.poll(tasks, TICKED) {
+                let times = TaskTimes {
+                    tasks,
+                    stack_used: cx.local.stack.used(),
+                    stack_bytes: stack_mark::BYTES,
+                    ..TaskTimes::default()
+                };
+                cx.shared.comms.lock(|comms| comms.set_times(&times));
             }
             cx.shared.checkins.idle_checks_in();
             cortex_m::asm::wfi();

@@ -13,7 +13,7 @@
 //! | shared | between | locked for |
 //! |---|---|---|
 //! | `command`: safety, motor, blocks, its plan | 4, 1, 0 | a status, two samples; storing the plan |
-//! | `exchange` | 5, 4, 3, 0 | never: atomic |
+//! | `exchange`, `task_clock` | 5, 4, 3, 0; all | never: atomic |
 //! | `rendering_plan` | 3, 0 | storing it; applying it |
 //! | `commits` | 1, 0 | handing over a commit |
 //!
@@ -41,6 +41,8 @@ mod app {
     use board::encoder::Encoder;
     use board::link::{BUFFERS, DmaBuffer, EMPTY_BUFFER, Link};
     use board::mpu::OutputAccess;
+    use board::stack_mark::{self, StackMark};
+    use board::task_clock::{Run, TaskClock};
     use board::ticks::{self, BeginOfTick, FreeClock, MiddleOfTick};
     use board::watchdog::{TaskCheckins, Watchdog};
     use core::sync::atomic::{AtomicBool, Ordering};
@@ -55,10 +57,14 @@ mod app {
     use crepitus_device::drive::motor;
     use crepitus_device::drive::prepare::{Preparation, RenderingPlan};
     use crepitus_device::drive::rendering::Rendering;
-    use crepitus_protocol::Fault;
+    use crepitus_device::self_test::SelfTest;
+    use crepitus_device::task_times::{Reports, Sampling};
+    use crepitus_protocol::counters::DriveCounter;
     use crepitus_protocol::crash::Tick;
     use crepitus_protocol::frame::{DELIMITER, FrameBuffer};
     use crepitus_protocol::pieces::Reassembly;
+    use crepitus_protocol::task_times::TaskTimes;
+    use crepitus_protocol::{Fault, TICKS_PER_S};
     use stm32f4xx_hal::pac::Interrupt;
 
     /// Starts `link`, as the end of a sent frame does.
@@ -67,7 +73,8 @@ mod app {
     /// Starts `render_torque`: the vector of a timer that stays off.
     const RENDER: Interrupt = Interrupt::TIM7;
 
-    /// Tasks that check in with the watchdog.
+    /// Tasks that check in with the watchdog, and whose cycles are counted: in the order of the protocol's
+    /// `DRIVE_TASKS`.
     const SAMPLED: usize = 0;
     const COMMANDED: usize = 1;
     const RENDERED: usize = 2;
@@ -91,6 +98,8 @@ mod app {
         is_link_due: AtomicBool,
         counters: Counters,
         checkins: TaskCheckins<TASKS>,
+        task_clock: TaskClock<TASKS>,
+        sampling: Sampling,
     }
 
     #[local]
@@ -112,10 +121,12 @@ mod app {
         link_task: LinkTask<DmaBuffer>,
         preparation: Preparation,
         watchdog: Watchdog,
+        stack: StackMark,
     }
 
     #[init(local = [buffers: [FrameBuffer; BUFFERS] = [EMPTY_BUFFER; BUFFERS]])]
-    fn init(cx: init::Context) -> (Shared, Local) {
+    fn init(mut cx: init::Context) -> (Shared, Local) {
+        let stack = StackMark::paint();
         let board = DriveBoard::new(cx.device, cx.local.buffers.each_mut());
         let start = board.start;
         defmt::info!(
@@ -132,6 +143,9 @@ mod app {
             start: start.number,
             ..Boot::default()
         };
+        if board.self_test == SelfTest::CrystalWrong {
+            defmt::error!("drive: a crystal of {=u32} Hz", board.crystal_hz);
+        }
         let Ok((preparation, first)) = Preparation::new() else {
             panic!("the default parameters are invalid");
         };
@@ -147,6 +161,8 @@ mod app {
             is_link_due: AtomicBool::new(false),
             counters: Counters::new(),
             checkins: TaskCheckins::new(),
+            task_clock: TaskClock::start(&mut cx.core.DCB, &mut cx.core.DWT),
+            sampling: Sampling::new(),
         };
         let mut local = Local {
             middle: board.middle,
@@ -166,6 +182,7 @@ mod app {
             link_task: LinkTask::new(boot.identity, boot.start),
             preparation,
             watchdog: Watchdog::start(board.watchdog, IDLE_TIMEOUT_RUNS),
+            stack,
         };
         // Last, so that the first tick is like the others.
         local
@@ -177,14 +194,19 @@ mod app {
     #[task(
         binds = TIM4, priority = 5,
         local = [begin, encoder],
-        shared = [&exchange, &is_running, &checkins]
+        shared = [&exchange, &is_running, &checkins, &task_clock, &sampling]
     )]
     fn sample_encoder(cx: sample_encoder::Context) {
+        let run = Run::begin();
         cx.local.begin.acknowledge();
         cx.shared.checkins.check_in(SAMPLED);
         if cx.shared.is_running.load(Ordering::Relaxed) {
             cx.shared.exchange.sample(cx.local.encoder.count());
+            let instant = cx.local.begin.clocks();
             rtic::pend(RENDER);
+            cx.shared.sampling.store(run.end(), instant);
+        } else {
+            cx.shared.task_clock.end(SAMPLED, run);
         }
     }
 
@@ -194,9 +216,13 @@ mod app {
             middle, converters, clock, line, comms_line, bridge, coil, output_access, black_box,
             middles: u8 = 0,
         ],
-        shared = [command, &exchange, &is_running, &is_link_due, &counters, &checkins]
+        shared = [
+            command, &exchange, &is_running, &is_link_due, &counters, &checkins, &task_clock,
+            &sampling,
+        ]
     )]
     fn command_motor(mut cx: command_motor::Context) {
+        let run = Run::begin();
         let part = cx.local;
         part.middle.acknowledge();
         cx.shared.checkins.check_in(COMMANDED);
@@ -239,14 +265,20 @@ mod app {
         });
         cx.shared.is_link_due.store(true, Ordering::Relaxed);
         rtic::pend(LINK);
+        let clock = cx.shared.task_clock;
+        if let Some(cycles) = cx.shared.sampling.take() {
+            clock.add(SAMPLED, cycles);
+        }
+        clock.end(COMMANDED, run);
     }
 
     #[task(
         binds = TIM7, priority = 3,
         local = [rendering],
-        shared = [rendering_plan, &exchange, &checkins]
+        shared = [rendering_plan, &exchange, &checkins, &task_clock]
     )]
     fn render_torque(mut cx: render_torque::Context) {
+        let run = Run::begin();
         cx.shared.checkins.check_in(RENDERED);
         let (rendering, exchange) = (cx.local.rendering, cx.shared.exchange);
         if rendering.tick(exchange) {
@@ -254,6 +286,7 @@ mod app {
                 .rendering_plan
                 .lock(|plan| rendering.take_over(plan.as_ref(), exchange));
         }
+        cx.shared.task_clock.end(RENDERED, run);
     }
 
     #[task(
@@ -263,15 +296,17 @@ mod app {
             has_received: bool = false,
             has_ended: bool = false,
         ],
-        shared = [command, commits, &is_link_due, &counters, &checkins]
+        shared = [command, commits, &is_link_due, &counters, &checkins, &task_clock]
     )]
     fn link(cx: link::Context) {
+        let run = Run::begin();
         let (link, task) = (cx.local.link, cx.local.link_task);
         link.acknowledge();
         // The end of a sent frame is no tick.
         if !cx.shared.is_link_due.swap(false, Ordering::Relaxed) {
-            return;
+            return cx.shared.task_clock.end(LINKED, run);
         }
+        link.look();
         cx.shared.checkins.check_in(LINKED);
         cx.local.watchdog.feed(cx.shared.checkins);
         let (counters, unit) = (cx.shared.counters, cx.local.crc_unit);
@@ -302,12 +337,14 @@ mod app {
         if task.take_reboot() {
             board::stop::reboot();
         }
+        cx.shared.task_clock.end(LINKED, run);
     }
 
     #[idle(
-        local = [preparation],
+        local = [preparation, stack, reports: Reports = Reports::new(TICKS_PER_S)],
         shared = [
-            command, commits, rendering_plan, &exchange, &counters, &checkins,
+            command, commits, rendering_plan, &exchange, &counters, &checkins, &task_clock,
+            &sampling,
         ]
     )]
     fn idle(cx: idle::Context) -> ! {
@@ -334,6 +371,19 @@ mod app {
                 reported = Some(now);
                 let (state, fault) = now;
                 defmt::info!("{=str}, fault {=u8}", state.name(), fault);
+            }
+            cx.local.stack.advance();
+            let tasks = cx.shared.task_clock.tasks();
+            if let Some(tasks) = cx.local.reports.poll(tasks, COMMANDED) {
+                let (earliest_sample, latest_sample) = cx.shared.sampling.span();
+                counters.times().offer(&TaskTimes {
+                    tasks,
+                    earliest_sample,
+                    latest_sample,
+                    late_ticks: counters.get(DriveCounter::LateTicks),
+                    stack_used: cx.local.stack.used(),
+                    stack_bytes: stack_mark::BYTES,
+                });
             }
             cx.shared.checkins.idle_checks_in();
             board::sleep();

@@ -1,6 +1,7 @@
 //! Frames from the drive, held to what the bench has seen of it.
 
 use super::Bench;
+use crepitus_device::drive::batch::QUEUE_BLOCKS;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::crash::PART_WORDS;
 use crepitus_protocol::link::FromDrive;
@@ -31,9 +32,10 @@ impl Bench {
         let produced = u64::from(counters.get(DriveCounter::Produced));
         let dropped = u64::from(counters.get(DriveCounter::Dropped));
         let samples = BLOCK_SAMPLES as u64;
+        let queue = QUEUE_BLOCKS as u64;
         assert_eq!(produced, self.ticks / samples * samples);
         let waiting = produced - dropped - self.received;
-        assert!(waiting <= 4 * samples, "{waiting} samples wait");
+        assert!(waiting <= queue * samples, "{waiting} samples wait");
     }
 
     fn received(&mut self, frame: &[u8]) {
@@ -57,6 +59,7 @@ impl Bench {
                         };
                         assert!(self.states.iter().any(is_so), "{told:?} was never so");
                     }
+                    FromDrive::Times(times) => panic!("nobody measures {times:?}"),
                     FromDrive::CrashPart(part) => {
                         let expected = self.crash.chunks(PART_WORDS).nth(part.number.into());
                         let words = part.words.as_ref().map(<[u32; PART_WORDS]>::as_slice);

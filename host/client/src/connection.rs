@@ -17,6 +17,7 @@
 //! | a device in this process as a transport, the hand on its leg | [`Simulated`], [`HandInput`] |
 //! | real time, in ticks | [`Clock`] |
 //! | identity, status and faults, as text and as JSON | [`device_text`] |
+//! | times of its hardware tasks, as text and as JSON | [`times_text`] |
 //! | parameters by name and as JSON | [`parameters`] |
 
 mod clock;
@@ -26,6 +27,7 @@ mod input;
 mod open_error;
 pub mod parameters;
 mod simulated;
+pub mod times_text;
 
 pub use clock::Clock;
 pub use connection::{Connection, is_in_this_process, is_port};

@@ -2,6 +2,7 @@
 
 use crate::transport::TransportError;
 use crepitus_protocol::host::Status;
+use crepitus_protocol::task_times::DeviceTimes;
 use crepitus_protocol::telemetry::Block;
 use std::time::Duration;
 
@@ -15,6 +16,8 @@ pub enum Event {
     DriveRestarted,
     /// State, fault, presence of the drive or holder of the lease have changed.
     State(Box<StateChange>),
+    /// Times of the hardware tasks: once a second while subscribed, of a device that measures them.
+    Times(Box<DeviceTimes>),
     /// No block has arrived for this long, though the connection is open.
     /// Reported once for each silence.
     Silent(Duration),

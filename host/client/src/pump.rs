@@ -166,6 +166,12 @@ impl<T: Transport> Client<T> {
                 self.take_block(block);
                 None
             }
+            Incoming::Times(times) => {
+                if self.telemetry.is_subscribed && self.events.len() < WAITING_EVENTS {
+                    self.events.push_back(Event::Times(times));
+                }
+                None
+            }
             Incoming::Reply(reply) if reply.session != self.session => {
                 self.tally.stray_answers += 1;
                 None

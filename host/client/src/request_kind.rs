@@ -30,6 +30,7 @@ crepitus_protocol::named! {
         Unsubscribe => "unsubscribe",
         ReadCrash => "read-crash",
         PlayChirp => "play-chirp",
+        Times => "times",
     }
 }
 
@@ -65,6 +66,7 @@ impl RequestKind {
             Operation::Unsubscribe => Self::Unsubscribe,
             Operation::ReadCrash { .. } => Self::ReadCrash,
             Operation::PlayChirp(_) => Self::PlayChirp,
+            Operation::Times => Self::Times,
         }
     }
 
@@ -96,7 +98,8 @@ impl RequestKind {
             | Self::Parameters
             | Self::Disarm
             | Self::Subscribe
-            | Self::Unsubscribe => false,
+            | Self::Unsubscribe
+            | Self::Times => false,
         }
     }
 

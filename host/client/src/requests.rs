@@ -13,6 +13,7 @@ use crepitus_protocol::chirp::PlayedChirp;
 use crepitus_protocol::crash::{self, Controller, Head, Tick};
 use crepitus_protocol::host::{Answer, Counters, Operation, Refusal, Status};
 use crepitus_protocol::management::{self, Action, Role};
+use crepitus_protocol::task_times::DeviceTimes;
 use crepitus_protocol::{Revision, Values};
 use std::time::Duration;
 
@@ -115,6 +116,14 @@ impl<T: Transport> Client<T> {
     /// See above.
     pub fn counters(&mut self) -> Result<Counters, Error> {
         answer!(self, Operation::Counters, Answer::Counters(counters) => counters)
+    }
+
+    /// Reads the times of the hardware tasks.
+    ///
+    /// # Errors
+    /// See above.
+    pub fn times(&mut self) -> Result<DeviceTimes, Error> {
+        answer!(self, Operation::Times, Answer::Times(times) => times)
     }
 
     /// Reads a controller's post-mortem record; `None` if it has none.

@@ -4,6 +4,7 @@ use crate::transport::{Transport, TransportError};
 use crepitus_protocol::frame::{self, DELIMITER};
 use crepitus_protocol::host::{Reply, Request};
 use crepitus_protocol::management::{Answer, ManagementRequest};
+use crepitus_protocol::task_times::DeviceTimes;
 use crepitus_protocol::telemetry::Block;
 use crepitus_protocol::{Decoder, Lane};
 use std::time::Duration;
@@ -14,6 +15,7 @@ pub(crate) enum Incoming {
     Block(Box<Block>),
     Reply(Box<Reply>),
     Answer(Answer),
+    Times(Box<DeviceTimes>),
 }
 
 /// Sends and receives messages over a transport.
@@ -152,6 +154,7 @@ impl Inbox {
                     body.message().map(|block| Incoming::Block(Box::new(block)))
                 }
                 Some(Lane::Reply) => body.message().map(|reply| Incoming::Reply(Box::new(reply))),
+                Some(Lane::Times) => body.message().map(|times| Incoming::Times(Box::new(times))),
                 Some(Lane::ManagementAnswer) => Answer::of(body.payload).map(Incoming::Answer),
                 _ => None,
             };

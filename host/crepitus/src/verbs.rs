@@ -4,6 +4,7 @@
 
 pub(crate) mod accuracy;
 pub(crate) mod arm;
+pub(crate) mod bring_up;
 pub(crate) mod calibrate;
 pub(crate) mod clear_fault;
 pub(crate) mod completions;
@@ -66,6 +67,7 @@ verbs! {
     Info: info,
     Doctor: doctor,
     Params: params,
+    BringUp: bring_up,
     Calibrate: calibrate,
     Identify: identify,
     IdentifyActuator: identify_actuator,

@@ -11,6 +11,7 @@ use crepitus_protocol::frame::{BODY_BYTES, CRC, FRAME_BYTES};
 use crepitus_protocol::host::{Reply, Request};
 use crepitus_protocol::link::{FromDrive, STALE_TICKS, ToDrive};
 use crepitus_protocol::parameters::{Kind, PARAMETER_COUNT, PARAMETERS, When};
+use crepitus_protocol::task_times::{COMMS_TASKS, DRIVE_TASKS};
 use crepitus_protocol::telemetry::{
     BLOCK_SAMPLES, Block, COIL_CURRENTS, EFFECT_PHASES_BYTES, SAMPLE_BYTES,
 };
@@ -52,6 +53,7 @@ fn the_protocol_is_on_its_page() {
         ("coil faults", coil_faults()),
         ("drive counters", counters(&DRIVE_COUNTERS)),
         ("comms counters", counters(&COMMS_COUNTERS)),
+        ("tasks", tasks()),
         ("examples", short(&examples)),
     ];
     pages::hold(
@@ -115,6 +117,7 @@ fn lanes() -> String {
             Lane::Telemetry => ("drive → comms → host", "`Block`"),
             Lane::ToDrive => ("comms → drive", "`ToDrive`"),
             Lane::FromDrive => ("drive → comms", "`FromDrive`"),
+            Lane::Times => ("comms → host", "`DeviceTimes`"),
         };
         let _ = writeln!(
             text,
@@ -259,6 +262,16 @@ fn counters(list: &[CounterSpec]) -> String {
     let mut text = "| place | name | meaning |\n|---|---|---|\n".to_owned();
     for (place, counter) in list.iter().enumerate() {
         let _ = writeln!(text, "| {place} | {} | {} |", counter.name, counter.meaning);
+    }
+    text
+}
+
+/// Tasks of both controllers, by their place in `TaskTimes`.
+fn tasks() -> String {
+    let mut text = "| place | drive | comms |\n|---|---|---|\n".to_owned();
+    for (place, drive) in DRIVE_TASKS.iter().enumerate() {
+        let comms = COMMS_TASKS.get(place).copied().unwrap_or("–");
+        let _ = writeln!(text, "| {place} | {drive} | {comms} |");
     }
     text
 }

@@ -13,6 +13,7 @@ use crepitus_protocol::link::{
 use crepitus_protocol::measured::Measured;
 use crepitus_protocol::parameters::PARAMETERS;
 use crepitus_protocol::pieces::{self, Piece};
+use crepitus_protocol::task_times::{DeviceTimes, TaskCycles, TaskTimes};
 use crepitus_protocol::telemetry::{BLOCK_SAMPLES, Block};
 use crepitus_protocol::telemetry::{
     BlockFlags, CoilCurrent, EffectPhases, NO_CURRENT, Sample, SampleFlags,
@@ -89,6 +90,8 @@ pub(crate) fn all() -> Vec<Example> {
     all.extend(blocks());
     all.extend(to_drive());
     all.extend(from_drive());
+    all.push(example(Lane::Times, "times.of-drive", &TIMES, None));
+    all.push(example(Lane::Times, "times.of-comms", &COMMS_TIMES, None));
     all
 }
 
@@ -131,6 +134,7 @@ fn operation_name(operation: &Operation) -> &'static str {
         Operation::Unsubscribe => "unsubscribe",
         Operation::Open => "open",
         Operation::PlayChirp(_) => "play-chirp",
+        Operation::Times => "times",
         Operation::ReadCrash { controller, .. } => match controller {
             Controller::Drive => "read-crash.drive",
             Controller::Comms => "read-crash.comms",
@@ -166,6 +170,7 @@ fn requests() -> Vec<Example> {
             controller: Controller::Comms,
             part: 2,
         },
+        Operation::Times,
     ];
     (0x1fe..)
         .zip(asks)
@@ -201,6 +206,7 @@ fn answer_name(answer: &Answer) -> &'static str {
         Answer::Opened { .. } => "opened",
         Answer::CrashPart(Part { words: None, .. }) => "no-crash-part",
         Answer::CrashPart(_) => "crash-part",
+        Answer::Times(_) => "times",
     }
 }
 
@@ -225,6 +231,50 @@ const PART: Part = Part {
         0,
         0,
     ]),
+};
+
+/// Times of a drive, and none of comms.
+const DRIVE_TIMES: TaskTimes = TaskTimes {
+    tasks: [
+        TaskCycles {
+            runs: 20_000,
+            worst: 96,
+            mean_256: 23_040,
+        },
+        TaskCycles {
+            runs: 20_001,
+            worst: 1_870,
+            mean_256: 362_752,
+        },
+        TaskCycles {
+            runs: 19_999,
+            worst: 1_105,
+            mean_256: 230_400,
+        },
+        TaskCycles {
+            runs: 21_000,
+            worst: 1_533,
+            mean_256: 128,
+        },
+    ],
+    earliest_sample: 40,
+    latest_sample: 62,
+    late_ticks: 3,
+    stack_used: 2_120,
+    stack_bytes: 65_536,
+};
+const COMMS_TIMES: DeviceTimes = DeviceTimes {
+    drive: None,
+    comms: Some(TaskTimes {
+        earliest_sample: 0,
+        latest_sample: 0,
+        late_ticks: 0,
+        ..DRIVE_TIMES
+    }),
+};
+const TIMES: DeviceTimes = DeviceTimes {
+    drive: Some(DRIVE_TIMES),
+    comms: None,
 };
 
 /// Measurements of a drive with a joint's sensor.
@@ -282,6 +332,7 @@ fn replies() -> Vec<Example> {
             words: None,
             ..PART
         }),
+        Answer::Times(TIMES),
     ];
     let mut examples: Vec<_> = answers
         .iter()
@@ -481,6 +532,7 @@ fn from_drive() -> Vec<Example> {
         ("full", FromDrive::Status(full)),
         ("command-refused", FromDrive::Status(refused)),
         ("of-a-record", FromDrive::CrashPart(PART)),
+        ("of-tasks", FromDrive::Times(DRIVE_TIMES)),
     ]
     .into_iter()
     .map(|(name, message)| {
@@ -488,6 +540,7 @@ fn from_drive() -> Vec<Example> {
         let kind = match message {
             FromDrive::Status(_) => "status",
             FromDrive::CrashPart(_) => "crash-part",
+            FromDrive::Times(_) => "times",
         };
         let name = format!("from-drive.{kind}.{name}");
         example(Lane::FromDrive, &name, &message, None)

@@ -21,6 +21,7 @@ mod walk;
 use crepitus_protocol::Decoder;
 use crepitus_protocol::host::{Reply, Request};
 use crepitus_protocol::link::{FromDrive, ToDrive};
+use crepitus_protocol::task_times::DeviceTimes;
 use crepitus_protocol::telemetry::Block;
 use examples::Example;
 use postcard_schema::Schema;
@@ -28,12 +29,13 @@ use postcard_schema::schema::NamedType;
 use std::collections::BTreeSet;
 
 /// The postcard messages of both wires.
-const ROOTS: [&NamedType; 5] = [
+const ROOTS: [&NamedType; 6] = [
     Request::SCHEMA,
     Reply::SCHEMA,
     Block::SCHEMA,
     ToDrive::SCHEMA,
     FromDrive::SCHEMA,
+    DeviceTimes::SCHEMA,
 ];
 
 /// Returns whether files are to be rewritten.

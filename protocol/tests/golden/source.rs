@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-const SOURCES: [&str; 12] = [
+const SOURCES: [&str; 13] = [
     include_str!("../../src/chirp.rs"),
     include_str!("../../src/counters.rs"),
     include_str!("../../src/crash.rs"),
@@ -14,6 +14,7 @@ const SOURCES: [&str; 12] = [
     include_str!("../../src/revision.rs"),
     include_str!("../../src/settings.rs"),
     include_str!("../../src/state.rs"),
+    include_str!("../../src/task_times.rs"),
     include_str!("../../src/telemetry.rs"),
 ];
 

@@ -157,7 +157,7 @@ class Device:
         return self._device.armed
 
     def info(self) -> Info:
-        """Port, identities, status, faults and counters: what ``crepitus info --json`` prints."""
+        """Identities, status, faults, counters, times: as ``crepitus info --json``."""
         info: Info = json.loads(self._device.info())
         return info
 

@@ -2,18 +2,20 @@
 //!
 //! | part | from |
 //! |---|---|
-//! | RCC, PWR, CRC, GPIO, TIM1 to TIM5, TIM8, DMA, IWDG, RNG, DBGMCU | the library |
-//! | FLASH, the breaks of TIM1 and TIM8, ADC1 to ADC3, USART6, OTG_FS | [`crate::devices`] |
+//! | RCC, PWR, CRC, GPIO, TIM1 to TIM5, TIM8, TIM11, DMA, IWDG, DBGMCU | the library |
+//! | FLASH, the breaks of TIM1 and TIM8, the input of TIM11, ADC1 to ADC3, USART6, OTG_FS, numbers of RNG | [`crate::devices`] |
 //!
 //! Wired: interrupts, the requests of USART6 to DMA2, the trigger outputs of
 //! TIM2, TIM3 and TIM8 to the converters, the encoder's channels to TIM5, the watchdog
-//! to the reset. Not wired: timers to each other, pins to EXTI.
+//! to the reset, and TIM1's trigger output to ITR0 of TIM3, TIM4 and TIM8, without the clocks that a
+//! timer takes to follow it. Not wired: other timers to each other, pins to EXTI.
 
 pub(crate) mod bus;
 mod bus_map;
 mod bus_waits;
 pub(crate) mod clocks;
 pub(crate) mod memory;
+mod memory_lag;
 pub(crate) mod part;
 pub(crate) mod pins;
 mod timed_flash;
@@ -22,14 +24,19 @@ pub(crate) mod wires;
 
 use crate::devices::adc::{self, Adc, Adcs, Analog};
 use crate::devices::brake::{self, Brake};
+use crate::devices::crystal_meter::CrystalMeter;
+use crate::devices::event_flags::EventFlags;
 use crate::devices::flash::Flash;
 use crate::devices::otg::{self, Otg};
+use crate::devices::random::Random;
 use crate::devices::registers::AsRegisters;
 use crate::devices::usart::{Usart, Wires};
 use crate::image::Image;
 use crate::pins::{Mode, Pin};
+use crate::refusal::Refusals;
 use bus::{Bus, Now};
 use clocks::{Clock, Rates};
+use crepitus_device::board::pins::drive;
 use part::{Gate, Library, Part, registers};
 use pins::Pins;
 use rsemu::core::device::Device;
@@ -42,7 +49,6 @@ use rsemu::dev::stm32::gpio::{Gpio, ResetValues};
 use rsemu::dev::stm32::iwdg::Iwdg;
 use rsemu::dev::stm32::pwr::{self, Pwr};
 use rsemu::dev::stm32::rcc::{self, Frequencies, Rcc};
-use rsemu::dev::stm32::rng::{Fault, Rng};
 use rsemu::dev::stm32::tim::Tim;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -51,15 +57,13 @@ use wires::{Latch, Nets};
 /// Ports that the chip has.
 const PORTS: u32 = 9;
 
-/// Clocks of 48 MHz that the random number generator takes for a word.
-const RANDOM_CLOCKS: u64 = 40;
-
-/// Seed of its numbers.
-const SEED: u64 = 1;
-
 /// Clocks of the crystal until crystal or PLL are ready: nominal 2 ms would
 /// only cost time.
 const READY_CLOCKS: u64 = 400;
+
+/// CR1 of TIM1, and the timers that its trigger output may start (RM0090, TIMx internal trigger connection).
+pub(crate) const TRIGGER: u32 = 0x4001_0000;
+pub(crate) const TRIGGERED: [&str; 3] = ["TIM3", "TIM4", "TIM8"];
 
 /// The parts that are accessed from outside of the chip.
 pub(crate) struct Chip {
@@ -77,12 +81,22 @@ pub(crate) struct Chip {
     pub(crate) dma: [Arc<Dma>; 2],
     /// Channels A and B of the encoder.
     pub(crate) quadrature: [WireSource; 2],
+    /// The first use that the manual forbids.
+    pub(crate) refusals: Arc<Refusals>,
     /// The watchdog has fired.
     pub(crate) watchdog_fired: Arc<AtomicBool>,
     /// The inputs of the reset flags.
     pub(crate) causes: wires::Causes,
     /// The interrupt lines that are high.
     pub(crate) raised: Arc<wires::Raised>,
+}
+
+/// The oscillators, with this crystal.
+fn frequencies(crystal_hz: u64) -> Frequencies {
+    Frequencies {
+        hse: crystal_hz.max(1),
+        ..Frequencies::default()
+    }
 }
 
 /// A timer of the library.
@@ -100,15 +114,18 @@ impl Chip {
     pub(crate) fn new(core: &ArmV7m, image: &Image) -> Self {
         let nets = Nets::new(core);
         let now = Now::default();
-        let frequencies = Frequencies::default();
+        let crystal_hz = u64::from(image.crystal_hz);
+        let frequencies = frequencies(crystal_hz);
         let rcc = Arc::new(Rcc::with_config(
             rcc::Variant::F4,
             frequencies,
             READY_CLOCKS,
         ));
-        let rates = Arc::new(Rates::new(rcc.clocks()));
+        let rates = Arc::new(Rates::new(rcc.clocks(), crystal_hz));
         let dma = [(); 2].map(|()| Arc::new(Dma::with_variant(dma::Variant::Stream)));
-        let flash = Flash::new(&image.flash, image.option_bytes, now.clone());
+        let refusals = Arc::<Refusals>::default();
+        let (bytes, options) = (&image.flash, image.option_bytes);
+        let flash = Flash::new(bytes, options, now.clone(), refusals.clone());
         let flash_registers = Arc::new(AsRegisters(flash.clone()));
         let mut parts = vec![
             Part::of_library("RCC", 0x4002_3800, Clock::Crystal, None, rcc.clone()),
@@ -130,15 +147,10 @@ impl Chip {
             apb2_reset,
             pwr,
         ));
-        let rng = Arc::new(Rng::build(SEED, RANDOM_CLOCKS, false, Fault::None));
-        let gate = Gate::ahb2(6);
-        parts.push(Part::of_library(
-            "RNG",
-            0x5006_0800,
-            Clock::Pll48,
-            gate,
-            rng,
-        ));
+        let random = Arc::new(Random::new());
+        let (base, gate) = (0x5006_0800, Gate::ahb2(6));
+        let random = Part::new("RNG", base, Clock::Pll48, gate, random.clone(), random);
+        parts.push(random);
         let crc = Arc::new(Crc::build(crc::Variant::F4));
         parts.push(Part::of_library(
             "CRC",
@@ -162,19 +174,26 @@ impl Chip {
         let ports = Self::add_ports(&mut parts);
         let pins = Arc::new(Pins::new(&ports));
         let analog = Arc::new(Analog::new(pins.clone()));
-        Self::add_dma(&mut parts, &nets, &dma);
+        Self::add_dma(&mut parts, &nets, &dma, &refusals);
         let adcs = Self::add_adcs(&mut parts, &nets, &rates, &now, &analog);
         let brakes = [
             (brake::TIM1, 0x4001_0000, 0, [24, 25, 26, 27]),
             (brake::TIM8, 0x4001_0400, 1, [43, 44, 45, 46]),
         ];
-        let brakes = brakes.map(|timer| Self::add_advanced_timer(&mut parts, &nets, &pins, timer));
-        let quadrature = Self::add_timers(&mut parts, &nets, &adcs);
+        let advanced =
+            brakes.map(|timer| Self::add_advanced_timer(&mut parts, &nets, &pins, timer));
+        let (quadrature, mut triggered) = Self::add_timers(&mut parts, &nets, &adcs);
+        triggered.push(advanced[1].1.clone());
+        Self::wire_trigger(&nets, &advanced[0].1, &triggered);
+        let brakes = advanced.map(|(brake, _)| brake);
+        Self::add_crystal_meter(&mut parts, &nets, &rcc, &rates, crystal_hz);
         let usart = Self::add_usart(&mut parts, &nets, &rates, &now, (&dma[1], &pins));
         let otg = Self::add_otg(&mut parts, &nets, &rates, &now, &pins);
         let causes = wires::Causes::new(&nets, &rcc);
+        let bus = Bus::new(parts, rates, now, rcc.clone(), dma.clone());
+        Self::let_memory_lag(&bus, usart.clone());
         Self {
-            bus: Arc::new(Bus::new(parts, rates, now, rcc.clone(), dma.clone())),
+            bus: Arc::new(bus),
             rcc,
             flash,
             ports,
@@ -186,6 +205,7 @@ impl Chip {
             otg,
             dma,
             quadrature,
+            refusals,
             watchdog_fired: watchdog_fired.flag(),
             causes,
             raised: nets.raised(),
@@ -225,18 +245,38 @@ impl Chip {
             .collect()
     }
 
-    fn add_dma(parts: &mut Vec<Part>, nets: &Nets<'_>, dma: &[Arc<Dma>; 2]) {
+    fn add_dma(
+        parts: &mut Vec<Part>,
+        nets: &Nets<'_>,
+        dma: &[Arc<Dma>; 2],
+        refusals: &Arc<Refusals>,
+    ) {
         const INTERRUPTS: [[u16; 8]; 2] = [
             [11, 12, 13, 14, 15, 16, 17, 47],
             [56, 57, 58, 59, 60, 68, 69, 70],
         ];
-        let places = [("DMA1", 0x4002_6000, 21), ("DMA2", 0x4002_6400, 22)];
-        for ((dma, interrupts), (name, base, bit)) in dma.iter().zip(INTERRUPTS).zip(places) {
+        let places = [("DMA1", 0x4002_6000, 21, 1), ("DMA2", 0x4002_6400, 22, 2)];
+        for ((dma, interrupts), (name, base, bit, controller)) in
+            dma.iter().zip(INTERRUPTS).zip(places)
+        {
             for (stream, interrupt) in interrupts.into_iter().enumerate() {
                 dma.connect_irq(stream, nets.interrupt(interrupt));
             }
             let gate = Gate::ahb1(bit);
-            parts.push(Part::of_library(name, base, Clock::Core, gate, dma.clone()));
+            let checked = Arc::new(EventFlags {
+                controller,
+                registers: registers(&**dma),
+                refusals: refusals.clone(),
+            });
+            let peripheral = Arc::new(Library(dma.clone()));
+            parts.push(Part::new(
+                name,
+                base,
+                Clock::Core,
+                gate,
+                checked,
+                peripheral,
+            ));
         }
     }
 
@@ -272,7 +312,7 @@ impl Chip {
             u32,
             [u16; 4],
         ),
-    ) -> Arc<Brake> {
+    ) -> (Arc<Brake>, Arc<Tim>) {
         let timer = timer("advanced", 16);
         for (port, interrupt) in [
             ("irq-up", update),
@@ -285,7 +325,7 @@ impl Chip {
         let brake = Arc::new(Brake::new(
             input,
             registers(&*timer),
-            Arc::new(Library(timer)),
+            Arc::new(Library(timer.clone())),
             nets.interrupt(on_break),
             pins.clone(),
         ));
@@ -298,17 +338,22 @@ impl Chip {
             brake.clone(),
             brake.clone(),
         ));
-        brake
+        (brake, timer)
     }
 
-    fn add_timers(parts: &mut Vec<Part>, nets: &Nets<'_>, adcs: &Arc<Adcs>) -> [WireSource; 2] {
+    /// Adds the timers of APB1; returns the inputs of TIM5, and those that TIM1 triggers.
+    fn add_timers(
+        parts: &mut Vec<Part>,
+        nets: &Nets<'_>,
+        adcs: &Arc<Adcs>,
+    ) -> ([WireSource; 2], Vec<Arc<Tim>>) {
         const TIMERS: [(&str, u32, u32, u32, u16); 4] = [
             ("TIM2", 0x4000_0000, 0, 32, 28),
             ("TIM3", 0x4000_0400, 1, 16, 29),
             ("TIM4", 0x4000_0800, 2, 16, 30),
             ("TIM5", 0x4000_0c00, 3, 32, 50),
         ];
-        let mut quadrature = Vec::new();
+        let (mut quadrature, mut triggered) = (Vec::new(), Vec::new());
         for (name, base, bit, width, interrupt) in TIMERS {
             let timer = timer("general", width);
             let connected = timer.connect("irq", nets.interrupt(interrupt));
@@ -322,10 +367,41 @@ impl Chip {
                     .map(|port| nets.to_device(&*timer, port))
                     .into();
             }
+            if TRIGGERED.contains(&name) {
+                triggered.push(timer.clone());
+            }
             let gate = Gate::apb1(bit);
             parts.push(Part::of_library(name, base, Clock::Timers1, gate, timer));
         }
-        quadrature.try_into().expect("two channels")
+        (quadrature.try_into().expect("two channels"), triggered)
+    }
+
+    /// Wires TIM1's trigger output to the timers that it starts.
+    fn wire_trigger(nets: &Nets<'_>, bridge: &Tim, triggered: &[Arc<Tim>]) {
+        let trigger = nets.to_devices(triggered, "itr0");
+        let connected = bridge.connect("trgo", trigger);
+        connected.expect("an advanced timer has a trigger output");
+    }
+
+    fn let_memory_lag(bus: &Bus, receiver: Arc<Usart>) {
+        bus.memory_lag.of(Box::new(move || receiver.next_arrival()));
+    }
+
+    fn add_crystal_meter(
+        parts: &mut Vec<Part>,
+        nets: &Nets<'_>,
+        rcc: &Arc<Rcc>,
+        rates: &Arc<Rates>,
+        crystal_hz: u64,
+    ) {
+        let timer = timer("general", 16);
+        let input = nets.to_device(&*timer, "ti1");
+        let behind = (registers(&*timer), Arc::new(Library(timer)) as Arc<_>);
+        let clock = (rates.clone(), crystal_hz);
+        let meter = Arc::new(CrystalMeter::new(behind, input, registers(&**rcc), clock));
+        let (clock, gate) = (Clock::Timers2, Gate::apb2(18));
+        let part = Part::new("TIM11", 0x4001_4800, clock, gate, meter.clone(), meter);
+        parts.push(part);
     }
 
     fn add_usart(
@@ -338,9 +414,9 @@ impl Chip {
         const CHANNEL: u8 = 5;
         let wires = Wires {
             pins: pins.clone(),
-            sends: Pin::new('C', 6),
-            receives: Pin::new('C', 7),
-            function: Mode::Alternate(8),
+            sends: Pin::of(&drive::LINK_SENDS),
+            receives: Pin::of(&drive::LINK_RECEIVES),
+            function: Mode::of(&drive::LINK_SENDS),
         };
         let requests = |streams: [usize; 2]| {
             streams

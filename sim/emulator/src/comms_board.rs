@@ -13,12 +13,14 @@ use crate::character::Character;
 use crate::drive_board::{CommsSide, HALF};
 use crate::image::Image;
 use crate::mcu::{Pin, Reset};
+use crate::refusal::Refusal;
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
+use crepitus_device::board::pins::comms;
 
 /// The enable line: what drives it, and where it is read back.
-const LINE: Pin = Pin::new('B', 0);
-const LINE_BACK: Pin = Pin::new('B', 1);
+const LINE: Pin = Pin::of(&comms::LINE);
+const LINE_BACK: Pin = Pin::of(&comms::LINE_BACK);
 
 /// The board.
 pub struct CommsBoard {
@@ -85,5 +87,9 @@ impl CommsSide for CommsBoard {
 
     fn set_hung(&mut self, is_hung: bool) {
         self.mcu.set_hung(is_hung);
+    }
+
+    fn refusal(&self) -> Option<Refusal> {
+        self.mcu.refusal()
     }
 }

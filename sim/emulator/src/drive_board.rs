@@ -11,8 +11,9 @@
 //!
 //! Leg and chip run alternately, half a tick at a time. The halves are
 //! synchronised with the bridge's timer once it runs: a tick begins at its
-//! bottom. The leg gets the bridge's mean voltage: duty times supply,
-//! without dead time. The encoder's edges are evenly spaced in the last six
+//! bottom. The leg gets the bridge's mean voltage: duty times supply. With a scene whose `motor` has
+//! the board's path of the current, the leg makes the pulses of it, and the converters see the two
+//! amplifiers as they are when each sampling ends. The encoder's edges are evenly spaced in the last six
 //! tenths of a half. The comparator is evaluated as a half ends.
 //!
 //! The driver of the vibration actuator's coil hangs on TIM8 and on the gate of both
@@ -33,11 +34,15 @@ mod native_comms;
 mod pin_map;
 mod wiring;
 
+use crate::devices::adc::Course;
 use crate::image::Image;
 use crate::mcu::{Reset, Sampling, Watch};
+use crate::pins::Pin;
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
-use crepitus_device::drive::plausibility::TRIP_A;
+use crepitus_device::board::{
+    self, COIL_CURRENT, MOTOR_CURRENT, MOTOR_TEMPERATURE, REFERENCE_V, TRIP_A,
+};
 use crepitus_virtual_device::leg::{CurrentPath, Leg, Terminals};
 use encoder_edges::Edges;
 use half_bridges::Quiet;
@@ -52,11 +57,11 @@ pub use native_comms::NativeComms;
 /// Half a tick.
 pub const HALF: Time = Time::from_us(25);
 
-/// Share of the converters' reference per ampere: 33 mΩ, 20 V/V, of 3.3 V.
-const SHARE_PER_A: f64 = 20.0 * 0.033 / 3.3;
+/// Share of the converters' reference per ampere.
+const SHARE_PER_A: f64 = MOTOR_CURRENT.volts_per_ampere() / REFERENCE_V;
 
-/// Share of the converters' reference per ampere of the coil: 25 mΩ.
-const COIL_SHARE_PER_A: f64 = 20.0 * 0.025 / 3.3;
+/// Share of the converters' reference per ampere of the coil.
+const COIL_SHARE_PER_A: f64 = COIL_CURRENT.volts_per_ampere() / REFERENCE_V;
 
 /// Faults of the board.
 #[derive(Clone, Copy, Debug, Default)]
@@ -157,11 +162,9 @@ impl<C: CommsSide> DriveBoard<C> {
         }
         let counter = wiring::counter(&self.mcu);
         let begin = self.mcu.now().min(self.end);
-        let sensor_a = self.leg.current_a(CurrentPath::Sensor);
-        let monitor_a = self.leg.current_a(CurrentPath::Monitor);
-        self.mcu.set_analog(SENSOR, 0.5 + SHARE_PER_A * sensor_a);
+        self.show_current(CurrentPath::Sensor, SENSOR, SHARE_PER_A, self.end);
         // Wired the other way round.
-        self.mcu.set_analog(MONITOR, 0.5 - SHARE_PER_A * monitor_a);
+        self.show_current(CurrentPath::Monitor, MONITOR, -SHARE_PER_A, self.end);
         let coil_share = 0.5 + COIL_SHARE_PER_A * self.leg.coil_a();
         self.mcu.set_analog(COIL, coil_share);
         self.show_slow_sensors();
@@ -174,6 +177,7 @@ impl<C: CommsSide> DriveBoard<C> {
         go(&mut self.mcu, self.end, &mut watch);
         self.check_comparator();
         self.carry();
+        self.check_refusals();
         let resets = self.mcu.take_resets();
         if !resets.is_empty() {
             (self.is_synchronised, self.quiet) = (false, None);
@@ -189,11 +193,43 @@ impl<C: CommsSide> DriveBoard<C> {
         self.is_second = !self.is_second;
     }
 
+    /// Adds a program that was stopped to the errors.
+    fn check_refusals(&mut self) {
+        let found = [
+            ("drive", self.mcu.refusal()),
+            ("comms", self.comms.refusal()),
+        ];
+        for (controller, refusal) in found {
+            let Some(refusal) = refusal else { continue };
+            let error = BoardError::Refused {
+                controller,
+                refusal,
+            };
+            if !self.errors.iter().any(|(_, known)| *known == error) {
+                self.errors.push((self.mcu.now(), error));
+            }
+        }
+    }
+
+    /// A current at its pin, with this share of the reference for an ampere, in the half that begins.
+    fn show_current(&mut self, path: CurrentPath, pin: Pin, share_per_a: f64, begin: Time) {
+        let share = move |current_a: f64| 0.5 + share_per_a * current_a;
+        match self.leg.amplifier(path) {
+            None => self.mcu.set_analog(pin, share(self.leg.current_a(path))),
+            Some(amplifier) => {
+                let course = Course::new(begin, move |at_s| share(amplifier.shown_a(at_s)));
+                self.mcu.set_analog_course(pin, course);
+            }
+        }
+    }
+
     fn show_slow_sensors(&mut self) {
         let supply_v = self.leg.measured_supply_v();
-        let motor_v = 0.5 + 0.01 * self.leg.slow_sensors().motor_c;
-        self.mcu.set_analog(SUPPLY, supply_v / 16.0 / 3.3);
-        self.mcu.set_analog(MOTOR, motor_v / 3.3);
+        let motor_c = self.leg.slow_sensors().motor_c;
+        let motor_v = MOTOR_TEMPERATURE.freezing_v + motor_c / MOTOR_TEMPERATURE.celsius_per_volt;
+        let supply_share = supply_v / board::SUPPLY.share() / REFERENCE_V;
+        self.mcu.set_analog(SUPPLY, supply_share);
+        self.mcu.set_analog(MOTOR, motor_v / REFERENCE_V);
         self.mcu.set_analog(JOINT, self.leg.joint_turns());
     }
 

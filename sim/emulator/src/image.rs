@@ -1,5 +1,6 @@
 //! Images: the part of an ELF file that lies in flash, and its symbols.
 
+use crepitus_device::board::CRYSTAL_HZ;
 use crepitus_files::input::{self, InputError};
 use object::elf::{EM_ARM, PT_LOAD};
 use object::read::elf::{ElfFile32, FileHeader as _, ProgramHeader as _};
@@ -62,6 +63,8 @@ pub struct Image {
     pub flash: Vec<u8>,
     /// The option bytes of the chip that it is programmed into.
     pub option_bytes: u32,
+    /// The crystal of the board that it is programmed into, Hz. A board without one is not modelled.
+    pub crystal_hz: u32,
     symbols: BTreeMap<String, Symbol>,
 }
 
@@ -83,6 +86,7 @@ impl Image {
         Self {
             flash: flash.to_vec(),
             option_bytes: OPTION_BYTES,
+            crystal_hz: CRYSTAL_HZ,
             symbols: BTreeMap::new(),
         }
     }

@@ -12,6 +12,7 @@
 //! | its resets, accesses and observers | [`mcu`] |
 //! | setup of pins | [`pins`] |
 //! | cycles of a task | [`cycles`] |
+//! | uses that the reference manual forbids | [`refusal`] |
 //! | wait states and caches of flash | [`flash_interface`] |
 //! | cost of a step of each solver | [`ladder`] |
 //! | building and reading images | [`firmware`], [`image`] |
@@ -60,6 +61,8 @@ pub mod on_target;
 pub mod pair;
 #[cfg(feature = "core")]
 pub mod pins;
+#[cfg(feature = "core")]
+pub mod refusal;
 #[cfg(feature = "core")]
 mod state_hash;
 #[cfg(feature = "core")]

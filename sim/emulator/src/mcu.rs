@@ -62,8 +62,19 @@ pub struct Step {
     /// Cycles of them in which the core waited for flash or a register; 0 unless
     /// they are modelled.
     pub waits: u32,
+    /// Its access to the core's cycle counter.
+    pub counter: Option<CounterAccess>,
     /// Time at which it began.
     pub at: Time,
+}
+
+/// An access of an instruction to the core's cycle counter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CounterAccess {
+    /// It loads the counter.
+    Load,
+    /// It stores to it.
+    Store,
 }
 
 /// An access of the program, or of the DMA, to a register.

@@ -12,6 +12,7 @@ use crate::comms_board::CommsBoard;
 use crate::drive_board::DriveBoard;
 use crate::image::Image;
 use crate::mcu::Reset;
+use crate::refusal::Refusal;
 use crate::state_hash::Hash;
 use crepitus_device::parameter_log::{ParameterLog, Sectors as _};
 use crepitus_protocol::{Revision, Values};
@@ -41,6 +42,14 @@ pub enum PlugInError {
     /// Comms does not switch its pull-up on.
     #[error("no device shows on the bus: the image of comms does not run")]
     NotConnected,
+    /// A core was stopped.
+    #[error("the image of {controller} is stopped: {refusal}")]
+    Refused {
+        /// `drive` or `comms`.
+        controller: &'static str,
+        /// The use of the chip that is forbidden.
+        refusal: Refusal,
+    },
     /// The host could not enumerate it.
     #[error("the emulated device cannot be enumerated")]
     Enumeration(#[from] EnumerationError),
@@ -92,9 +101,28 @@ impl Pair {
             run(boards);
             boards.comms().mcu().is_connected()
         }) {
+            self.check()?;
             return Err(PlugInError::NotConnected);
         }
         self.host = Some(CdcHost::enumerate(boards, &mut run)?);
+        Ok(())
+    }
+
+    /// Checks that neither core was stopped.
+    ///
+    /// # Errors
+    /// [`PlugInError::Refused`] if one was.
+    pub fn check(&self) -> Result<(), PlugInError> {
+        let drive = self.boards.mcu().refusal();
+        let comms = self.boards.comms().mcu().refusal();
+        for (controller, refusal) in [("drive", drive), ("comms", comms)] {
+            if let Some(refusal) = refusal {
+                return Err(PlugInError::Refused {
+                    controller,
+                    refusal,
+                });
+            }
+        }
         Ok(())
     }
 

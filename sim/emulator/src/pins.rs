@@ -1,5 +1,6 @@
 //! Pins and their setup: what connects a peripheral to its pin.
 
+use crepitus_device::board::{self, Connection};
 use std::fmt;
 
 /// A pin: `Pin::new('B', 12)` is PB12.
@@ -16,6 +17,11 @@ impl Pin {
             port: (port as u8).wrapping_sub(b'A'),
             number,
         }
+    }
+
+    /// The pin of a connection of the board description.
+    pub const fn of(connection: &Connection) -> Self {
+        Self::new(connection.pin.port, connection.pin.number)
     }
 
     /// Port of the pin, counted from A.
@@ -46,6 +52,18 @@ pub enum Mode {
     Alternate(u8),
     /// Connected to the converter.
     Analog,
+}
+
+impl Mode {
+    /// The mode that a connection of the board description needs.
+    pub const fn of(connection: &Connection) -> Self {
+        match connection.mode {
+            board::Mode::Input => Self::Input,
+            board::Mode::Output => Self::Output,
+            board::Mode::Alternate(function) => Self::Alternate(function),
+            board::Mode::Analog => Self::Analog,
+        }
+    }
 }
 
 /// Internal resistor of a pin.

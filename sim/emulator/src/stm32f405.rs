@@ -13,6 +13,7 @@
 //! Unless accesses to memory are observed, `fast_path` executes most instructions, with
 //! the same result in the same cycles.
 
+mod cycle_counter;
 mod exception_state;
 mod fast_path;
 mod interface;
@@ -27,6 +28,7 @@ use crate::image::Image;
 use crate::mcu::{Pin, RamAccess, Reset, Step, Watch};
 use crate::pins::Mode;
 use crate::time::Time;
+use crepitus_device::board::pins::drive;
 use exception_state::Before;
 use fast_path::{Executed, FastPath};
 use rsemu::core::space::MemAttrs;
@@ -43,8 +45,8 @@ const CORE: u32 = 0xe000_0000;
 const SYSTICK_ENABLE: u32 = 1;
 
 /// Pins of the encoder's channels, and their function.
-const ENCODER_PINS: [Pin; 2] = [Pin::new('A', 0), Pin::new('A', 1)];
-const ENCODER_FUNCTION: Mode = Mode::Alternate(2);
+const ENCODER_PINS: [Pin; 2] = [Pin::of(&drive::ENCODER_A), Pin::of(&drive::ENCODER_B)];
+const ENCODER_FUNCTION: Mode = Mode::of(&drive::ENCODER_A);
 
 /// Interval at which the core is polled for a reset request, or for sleep
 /// with its own timer running: 10 µs.
@@ -53,7 +55,7 @@ const LOOK_UNITS: u64 = 3_360;
 /// The library counts the eight words of a frame as separate loads and stores,
 /// in addition to the 12 and 10 cycles that include them: this number of
 /// cycles too many at every entry and every return. `tests/timing` has the
-/// known answer. Its own cycle counter, DWT, is not corrected.
+/// known answer. The core's cycle counter, DWT, is corrected with them.
 const FRAME_CYCLES: u64 = 8;
 
 /// No change of the exception takes less: that from one straight to the next.
@@ -213,6 +215,12 @@ impl Stm32f405 {
         self.chip.analog.set_noise(counts);
     }
 
+    /// Lets a byte that the DMA receives from the link get to memory so many clocks of 168 MHz after its
+    /// stream has counted it.
+    pub fn set_memory_lag(&mut self, clocks: u32) {
+        self.chip.bus.memory_lag.set(2 * u64::from(clocks));
+    }
+
     /// Triggers that the converters have missed because they were converting.
     pub fn lost_triggers(&self) -> u32 {
         self.chip.adcs.0.iter().map(|adc| adc.lost_triggers()).sum()
@@ -286,6 +294,7 @@ impl Stm32f405 {
 
     fn run<const WATCHED: bool>(&mut self, until: u64, watch: &mut dyn Watch) {
         while self.now < until {
+            self.is_hung |= self.chip.refusals.first().is_some();
             self.settle();
             let look = self.now + LOOK_UNITS;
             let stop = self.chip.bus.deadline().min(until).min(look);
@@ -303,6 +312,8 @@ impl Stm32f405 {
         self.chip.bus.waits.begin(self.clock);
         let cycles = self.step_without_waits();
         let waits = self.chip.bus.waits.end();
+        // The library's counter does not know of waits.
+        self.core.with_sys(|sys| sys.tick_cyccnt(waits));
         (cycles + waits, waits)
     }
 
@@ -337,6 +348,8 @@ impl Stm32f405 {
         if active == was_active {
             cycles
         } else {
+            self.core
+                .with_sys(|sys| sys.tick_cyccnt(FRAME_CYCLES.wrapping_neg()));
             cycles.saturating_sub(FRAME_CYCLES)
         }
     }
@@ -364,6 +377,7 @@ impl Stm32f405 {
                     active,
                     cycles: u32::try_from(executed.cycles).unwrap_or(u32::MAX),
                     waits: u32::try_from(executed.waits).unwrap_or(u32::MAX),
+                    counter: None,
                     at: Time::from_units(now + executed.begin * units),
                 });
             }
@@ -398,6 +412,10 @@ impl Stm32f405 {
             self.chip.bus.now.store(self.now, Relaxed);
             let before = WATCHED.then(|| self.before());
             let pc = before.map_or(0, |before| before.pc);
+            let counter = WATCHED
+                .then(|| cycle_counter::access(&self.core, |at| self.peek(at)))
+                .flatten();
+            let interrupted = self.exception;
             let (cycles, waits) = self.step();
             if let Some(before) = before {
                 for (address, is_write) in self.memory.take_accesses() {
@@ -413,6 +431,8 @@ impl Stm32f405 {
                     active: self.active,
                     cycles: u32::try_from(cycles).unwrap_or(u32::MAX),
                     waits: u32::try_from(waits).unwrap_or(u32::MAX),
+                    // With an exception the instruction has not been executed yet.
+                    counter: counter.filter(|_| self.exception == interrupted),
                     at: Time::from_units(self.now),
                 });
             }

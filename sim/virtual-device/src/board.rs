@@ -132,6 +132,8 @@ pub struct Board {
     comms_has_restarted: bool,
     /// The comparator behind the monitor's amplifier works.
     trips: bool,
+    /// The break line is pulled low from outside.
+    break_is_low: bool,
     /// The comparator has opened the bridge, until the drive floats it.
     comparator_tripped: bool,
     /// The drive's converters work: that of the sensor, and of the monitor.
@@ -199,6 +201,7 @@ impl Board {
             storage: Storage::new(start.saved),
             comms_has_restarted: false,
             trips: true,
+            break_is_low: false,
             comparator_tripped: false,
             converts: [true; 2],
             converts_slow: true,

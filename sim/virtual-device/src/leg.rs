@@ -17,6 +17,9 @@
 //! `friction-compensation`, `bone-shaping`, the current loop of `motor`) is
 //! the board's to do.
 //!
+//! A scene whose `motor` has dead time, lag or excursions of its amplifiers has them here, too: see
+//! [`current_path`](crepitus_plant::effects::motor::current_path).
+//!
 //! Strokes, sines and constant velocities continue for ever. Velocity knots and
 //! recordings are followed to the end of the scene; the motion then slows down
 //! within a tenth of a second, and rests.
@@ -39,7 +42,7 @@ mod tests;
 pub use coil::{COIL_RANGE_A, CoilFaults};
 pub use crepitus_plant::effects::motor::bridge::Terminals;
 pub use hand_input::HandInput;
-pub use sensors::{CurrentPath, CurrentSensor, EncoderWiring, SlowSensors};
+pub use sensors::{Amplifier, CurrentPath, CurrentSensor, EncoderWiring, SlowSensors};
 
 use coil::CoilDriver;
 use crepitus_model::Sense;
@@ -117,12 +120,12 @@ impl Leg {
     /// The first half of a tick. The current is sampled at its end.
     pub fn first_half(&mut self) {
         self.begun = (self.plant.felt_nms(), self.plant.actuator().charge_c());
-        self.half();
+        self.half(false);
     }
 
     /// The second half of a tick.
     pub fn second_half(&mut self) {
-        self.half();
+        self.half(true);
         let felt_nms = self.plant.felt_nms();
         let is_driven = matches!(self.terminals, Terminals::Driven(_));
         self.mover.tick(is_driven, &mut self.plant);
@@ -138,7 +141,8 @@ impl Leg {
         self.motor_nm = -impulse_nms / TICK_S;
     }
 
-    fn half(&mut self) {
+    fn half(&mut self, is_second: bool) {
+        self.plant.actuator_mut().begin_half(is_second);
         for _ in 0..self.steps_per_half {
             self.mover.advance(&mut self.plant);
         }
@@ -204,9 +208,22 @@ impl Leg {
         self.counter.preset(count);
     }
 
-    /// Reading of the current by one of the two shunts with its amplifier, A.
+    /// Reading of the current by one of the two shunts with its amplifier, A: the mean of a tick's conversions, after
+    /// its first half.
     pub fn current_a(&self, path: CurrentPath) -> f64 {
-        self.current_sensors[path as usize].shows(self.winding_current_a())
+        self.current_sensors[path as usize].shows(self.plant.actuator().sampled_a(path.half()))
+    }
+
+    /// The amplifier of a shunt in the last half of a tick; `None` if bridge and amplifiers are ideal, so that it shows
+    /// [`Self::current_a`] all the time.
+    pub fn amplifier(&self, path: CurrentPath) -> Option<Amplifier> {
+        let ways = self.plant.actuator().path()?;
+        Some(Amplifier {
+            off_a: self.winding_current_a() - ways.even_a(),
+            path: ways.clone(),
+            half: path.half(),
+            sensor: self.current_sensors[path as usize],
+        })
     }
 
     /// The true current, A; positive drives towards growing angle.

@@ -1,7 +1,8 @@
 //! Limits of torque, current, speed and range for the checks of samples, computed from parameters.
 
 use super::{CURRENT_SLACK_A, DEVIATING_SAMPLES, DEVIATION_A};
-use crate::drive::prepare::{LARGEST_DUTY, held_rad_s_per_volt};
+use crate::board::LARGEST_DUTY;
+use crate::drive::prepare::held_rad_s_per_volt;
 use crepitus_model::Real;
 use crepitus_protocol::telemetry::{BLOCK_TICKS, Sample};
 use crepitus_protocol::{DeviceSettings, LimitReason, TICK_S};

@@ -22,7 +22,7 @@ use proptest::test_runner::RngSeed;
 use std::collections::VecDeque;
 use std::vec::Vec;
 
-/// The longest that the drive may take for a commit, ticks: four blocks, and pieces that are sent again.
+/// The longest that the drive may take for a commit, ticks: the queued blocks, and pieces that are sent again.
 const PATIENCE_TICKS: u32 = 20_000;
 
 /// A commit, and the boot of comms that sends it.

@@ -1,9 +1,11 @@
 //! Identity, status and faults of a device, as text and as JSON.
 
+use crate::connection::times_text;
 use crate::{Handshake, coil_fault_text, fault_text};
 use crepitus_protocol::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
 use crepitus_protocol::host::{Counters, Status};
 use crepitus_protocol::management::Identity;
+use crepitus_protocol::task_times::DeviceTimes;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -76,8 +78,14 @@ pub fn status_json(status: &Status) -> Value {
     })
 }
 
-/// Returns port, identities, status, faults and counters as JSON.
-pub fn info_json(port: &str, handshake: &Handshake, status: &Status, counters: &Counters) -> Value {
+/// Returns port, identities, status, faults, counters and times of the tasks as JSON.
+pub fn info_json(
+    port: &str,
+    handshake: &Handshake,
+    status: &Status,
+    counters: &Counters,
+    times: &DeviceTimes,
+) -> Value {
     json!({
         "port": port,
         "comms": identity_json(&handshake.comms),
@@ -88,6 +96,7 @@ pub fn info_json(port: &str, handshake: &Handshake, status: &Status, counters: &
             "drive": counted(&DRIVE_COUNTERS, &counters.drive),
             "comms": counted(&COMMS_COUNTERS, &counters.comms),
         },
+        "times": times_text::json(handshake, times),
     })
 }
 

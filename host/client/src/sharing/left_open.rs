@@ -32,6 +32,7 @@ impl LeftOpen {
             Operation::Unsubscribe => self.is_subscribed = false,
             Operation::Status
             | Operation::Counters
+            | Operation::Times
             | Operation::Parameters
             | Operation::Commit { .. }
             | Operation::Save

@@ -4,7 +4,7 @@ use crate::cli::DeviceArguments;
 use crate::failure::{Failure, print, print_json};
 use crate::line::{Line, connect};
 use clap::Args;
-use crepitus_client::connection::device_text;
+use crepitus_client::connection::{device_text, times_text};
 use crepitus_client::{Client, Event, RequestKind};
 use crepitus_model::parameters::Source;
 use crepitus_model::render::effects::friction_compensation::FrictionCompensationSettings;
@@ -152,6 +152,7 @@ fn check(client: &mut Client<Line>, checks: &mut Vec<Check>) -> Result<(), crepi
     }
     round_trips(client, checks)?;
     telemetry(client, checks)?;
+    times(client, checks)?;
     wires(client, checks)
 }
 
@@ -306,6 +307,30 @@ fn telemetry(
             fine(what, "ok")
         } else {
             wrong(what, format!("{count} {remedy}"))
+        });
+    }
+    Ok(())
+}
+
+/// Times of the tasks; a stack that is nearly full is a problem. Late ticks are one by themselves.
+fn times(client: &mut Client<Line>, checks: &mut Vec<Check>) -> Result<(), crepitus_client::Error> {
+    let handshake = *client.handshake();
+    let times = client.times()?;
+    let all = [times.drive, times.comms];
+    for ((who, text), times) in times_text::summaries(&handshake, &times)
+        .into_iter()
+        .zip(all)
+    {
+        let what = if who == "drive" {
+            "drive times"
+        } else {
+            "comms times"
+        };
+        let is_full = times.is_some_and(|times| times.stack_used > times.stack_bytes / 8 * 7);
+        checks.push(if is_full {
+            wrong(what, format!("{text}: the stack is nearly full"))
+        } else {
+            fine(what, text)
         });
     }
     Ok(())

@@ -1,11 +1,11 @@
-//! `crepitus info`: identity, status and counters of a device.
+//! `crepitus info`: identity, status, counters and times of the tasks of a device.
 
 use crate::cli::DeviceArguments;
 use crate::crash_text;
 use crate::failure::{Failure, print, print_json};
 use crate::line::{Line, failure, manage};
 use clap::Args;
-use crepitus_client::connection::device_text;
+use crepitus_client::connection::{device_text, times_text};
 use crepitus_client::{Client, Error, Handshake};
 use crepitus_protocol::Revision;
 use crepitus_protocol::counters::{COMMS_COUNTERS, CounterSpec, DRIVE_COUNTERS};
@@ -14,7 +14,7 @@ use crepitus_protocol::host::{Counters, Status};
 use serde_json::json;
 use std::fmt::Write as _;
 
-/// Show identity, status and counters of a device.
+/// Show identity, status, counters and times of the tasks of a device.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -89,15 +89,17 @@ fn print_all(
 ) -> Result<(), Failure> {
     let status = client.status().map_err(failure)?;
     let counters = client.counters().map_err(failure)?;
+    let times = client.times().map_err(failure)?;
     if as_json {
         let port = client.port();
         return print_json(&device_text::info_json(
-            &port, handshake, &status, &counters,
+            &port, handshake, &status, &counters, &times,
         ));
     }
     let mut text = format!("port    {}\n{}", client.port(), identity_text(handshake));
     text.push_str(&status_text(&status));
     text.push_str(&counter_table(&counters));
+    text.push_str(&times_text::table(handshake, &times));
     print(&text)
 }
 

@@ -141,7 +141,7 @@ pub(super) fn write_into(
         effects: report_columns.settings(),
     };
     let mut collector = Collector::new(&setup);
-    collector.may_lack_from(ReportColumns::ALWAYS);
+    collector.may_lack_from(report_columns.certain());
     collector.compare(measured, &columns);
     let mut changes = parameters.changes().peekable();
     let mut changed_at_s = Vec::new();

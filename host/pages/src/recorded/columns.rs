@@ -47,12 +47,11 @@ pub struct ReportColumns {
     symptoms: Vec<(&'static EffectSpec, Option<u8>)>,
     /// The vibration actuator was.
     has_coil: bool,
+    /// The parameters of some rows are unknown.
+    is_unknown: bool,
 }
 
 impl ReportColumns {
-    /// Number of columns at the beginning that are those of every recording.
-    pub const ALWAYS: usize = ALWAYS.len();
-
     /// Returns the columns of a recording with these parameters.
     pub fn of(history: &History) -> Self {
         let mut in_force = history.in_force();
@@ -80,6 +79,7 @@ impl ReportColumns {
         }
         let is_unknown = sets.len() < history.0.len();
         Self {
+            is_unknown,
             settings: EffectSettings::read(&unchanged),
             has_crepitus: is_unknown
                 || sets
@@ -90,6 +90,12 @@ impl ReportColumns {
                 .iter()
                 .any(|values| EffectSettings::read(values).vibration_actuator.is_some()),
         }
+    }
+
+    /// Number of columns at the beginning that have a value in every row. The last of them, the motor's torque,
+    /// takes the parameters.
+    pub fn certain(&self) -> usize {
+        ALWAYS.len() - usize::from(self.is_unknown)
     }
 
     /// The settings of the symptoms that were the same whenever they were on.
@@ -201,7 +207,7 @@ mod tests {
         };
         let mut values = vec![7.0];
         columns.read(row, &derived, in_force, &mut values);
-        assert_eq!(values[ReportColumns::ALWAYS - 1], 0.5);
+        assert_eq!(values[ALWAYS.len() - 1], 0.5);
         values
     }
 
@@ -228,12 +234,21 @@ mod tests {
         let columns = effects.columns();
         let names: Vec<&str> = columns.iter().map(|c| c.name).collect();
         assert_eq!(
-            names[ReportColumns::ALWAYS + OBJECT.len()..],
+            names[ALWAYS.len() + OBJECT.len()..],
             ["range_limit_phase", "lead_pipe_phase"]
         );
         let none = ReportColumns::of(&History(vec![set(&off, 0)]));
         assert_eq!(none.columns(), [&ALWAYS[..], &OBJECT].concat());
         assert_eq!(none.settings(), EffectSettings::default());
+        assert_eq!(none.certain(), ALWAYS.len());
+        let mut unknown = set(&off, 0);
+        unknown.values = None;
+        let first_unknown = ReportColumns::of(&History(vec![unknown, set(&off, 20)]));
+        assert_eq!(
+            first_unknown.certain(),
+            ALWAYS.len() - 1,
+            "all but the motor's torque"
+        );
     }
 
     #[test]
@@ -311,10 +326,7 @@ mod tests {
         };
         let read = |in_force| {
             let values = values_under(&effects, &row, in_force);
-            (
-                values[ReportColumns::ALWAYS],
-                *values.last().expect("a phase"),
-            )
+            (values[ALWAYS.len()], *values.last().expect("a phase"))
         };
         assert_eq!(read(Some(&both)), (0.0, 1.0));
         let (object, lead_pipe) = read(Some(&neither));

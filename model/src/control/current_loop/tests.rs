@@ -93,7 +93,7 @@ fn overshoot(currents: &[f64]) -> f64 {
 
 #[test]
 fn settings_are_their_table_and_are_held_to_it() {
-    crate::parameters::tests::is_its_table_and_is_held_to_it::<5, CurrentLoopSettings>();
+    crate::parameters::tests::is_its_table_and_is_held_to_it::<7, CurrentLoopSettings>();
     let s = CurrentLoopSettings::default();
     assert_eq!((s.bandwidth_hz, s.resistance_ohm), (1000.0, 1.23));
     assert_eq!((s.inductance_h, s.supply_v), (0.34e-3, 24.0));

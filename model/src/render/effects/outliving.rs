@@ -23,6 +23,13 @@ pub struct Outliving<F, E> {
     /// nothing of it.
     law: E,
     is_on: bool,
+    passage: Passage<F>,
+}
+
+/// The passage of a torque from what was shown to what a law has. The same code for all laws: in the tick after a
+/// commit all symptoms may pass, and only the first fetches it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Passage<F> {
     slew_nm: F,
     way: Way<F>,
     last_nm: F,
@@ -41,6 +48,8 @@ enum Way<F> {
     Fading(F),
     /// Within this limit, which falls to nothing.
     Leaving(F),
+    /// Not any more.
+    Gone,
 }
 
 impl<F: Real, E: Law<Real = F>> Switched<F, E> for Outliving<F, E> {
@@ -48,47 +57,49 @@ impl<F: Real, E: Law<Real = F>> Switched<F, E> for Outliving<F, E> {
         Self {
             law: E::new(E::Coefficients::default()),
             is_on: false,
-            slew_nm,
-            way: Way::Free,
-            last_nm: F::ZERO,
+            passage: Passage {
+                slew_nm,
+                way: Way::Free,
+                last_nm: F::ZERO,
+            },
         }
     }
 
     fn change(&mut self, coefficients: &Option<Option<E::Coefficients>>, slew_nm: F) {
-        self.slew_nm = slew_nm;
+        self.passage.slew_nm = slew_nm;
         // By reference: most commits change none, and would copy it.
         let Some(coefficients) = coefficients else {
             return;
         };
         match (coefficients, self.is_on) {
             (None, false) => {}
-            (None, true) => self.way = Way::Leaving(self.last_nm.abs()),
+            (None, true) => self.passage.way = Way::Leaving(self.passage.last_nm.abs()),
             (Some(coefficients), true) => {
-                if matches!(self.way, Way::Leaving(_)) {
+                if matches!(self.passage.way, Way::Leaving(_)) {
                     // What has left does not come back: that would push.
-                    let left_nm = self.law.torque_nm().abs() - self.last_nm.abs();
+                    let left_nm = self.law.torque_nm().abs() - self.passage.last_nm.abs();
                     self.law.release(left_nm.at_least(F::ZERO));
                 }
                 self.law.adopt(*coefficients, slew_nm);
-                if self.way != Way::Appearing {
-                    self.way = Way::Adopted;
+                if self.passage.way != Way::Appearing {
+                    self.passage.way = Way::Adopted;
                 }
             }
             (Some(coefficients), false) => {
                 self.law.adopt(*coefficients, slew_nm);
                 self.is_on = true;
-                self.way = Way::Appearing;
+                self.passage.way = Way::Appearing;
             }
         }
     }
 
     fn rest(&mut self, place: &Position<F>) {
-        if matches!(self.way, Way::Leaving(_)) {
+        if matches!(self.passage.way, Way::Leaving(_)) {
             self.is_on = false;
         }
         Law::rest(&mut self.law, place);
-        self.way = Way::Free;
-        self.last_nm = F::ZERO;
+        self.passage.way = Way::Free;
+        self.passage.last_nm = F::ZERO;
     }
 
     #[inline]
@@ -108,7 +119,7 @@ impl<F: Real, E: Law<Real = F>> Outliving<F, E> {
         besides: &mut Besides<F>,
         observe: &mut O,
     ) -> F {
-        if matches!(self.way, Way::Appearing) {
+        if matches!(self.passage.way, Way::Appearing) {
             return self.appear(&travel.to, besides);
         }
         let law_nm = law_nm(&mut self.law, Some(travel), besides, observe);
@@ -126,11 +137,11 @@ impl<F: Real, E: Law<Real = F>> Outliving<F, E> {
             self.rest(&tick.place);
             return F::ZERO;
         }
-        if matches!(self.way, Way::Appearing) {
+        if matches!(self.passage.way, Way::Appearing) {
             return self.appear(&tick.place, besides);
         }
         if tick.missing_ticks > HOLD_TICKS {
-            self.law.release(self.slew_nm);
+            self.law.release(self.passage.slew_nm);
         }
         let law_nm = self.law.torque_nm();
         self.show(law_nm, tick.paid_share, None, besides)
@@ -140,7 +151,7 @@ impl<F: Real, E: Law<Real = F>> Outliving<F, E> {
     #[cold]
     fn appear(&mut self, place: &Position<F>, besides: &mut Besides<F>) -> F {
         Law::rest(&mut self.law, place);
-        self.way = Way::Adopted;
+        self.passage.way = Way::Adopted;
         besides.is_settling = true;
         F::ZERO
     }
@@ -159,23 +170,30 @@ impl<F: Real, E: Law<Real = F>> Outliving<F, E> {
         if is_active {
             nm = besides.pay(law_nm, paid_share);
         }
-        if !matches!(self.way, Way::Free) {
-            nm = self.held_back(nm, travel);
+        if !matches!(self.passage.way, Way::Free) {
+            nm = self.passage.held_back(nm, travel);
             besides.is_settling = true;
+            if self.passage.way == Way::Gone {
+                self.is_on = false;
+                self.passage.way = Way::Free;
+            }
         }
         if is_active && nm != F::ZERO {
             // The tank pays for what is shown, also where the law itself has none any more.
             besides.active_nm += nm;
         }
-        self.last_nm = nm;
+        self.passage.last_nm = nm;
         nm
     }
+}
 
+impl<F: Real> Passage<F> {
     /// Returns the torque to show for the law's torque while the law is exchanged, N·m.
     #[cold]
+    #[inline(never)]
     fn held_back(&mut self, law_nm: F, travel: Option<&Travel<F>>) -> F {
         match self.way {
-            Way::Free | Way::Appearing => law_nm,
+            Way::Free | Way::Appearing | Way::Gone => law_nm,
             Way::Adopted => {
                 let shown_nm = self.fade(law_nm, self.last_nm - law_nm, self.slew_nm);
                 // What a law makes of its coefficients shows with a sample.
@@ -196,11 +214,11 @@ impl<F: Real, E: Law<Real = F>> Outliving<F, E> {
             }
             Way::Leaving(most_nm) => {
                 let most_nm = (most_nm - self.slew_nm).at_least(F::ZERO);
-                self.way = Way::Leaving(most_nm);
-                if most_nm == F::ZERO {
-                    self.is_on = false;
-                    self.way = Way::Free;
-                }
+                self.way = if most_nm == F::ZERO {
+                    Way::Gone
+                } else {
+                    Way::Leaving(most_nm)
+                };
                 law_nm.within(most_nm)
             }
         }
@@ -210,9 +228,14 @@ impl<F: Real, E: Law<Real = F>> Outliving<F, E> {
     /// it is and what was shown. A law that gives way faster leaves no push behind.
     fn fade(&mut self, law_nm: F, besides_nm: F, fades_nm: F) -> F {
         let left_nm = besides_nm - besides_nm.within(fades_nm);
+        let (low_nm, high_nm) = if law_nm < self.last_nm {
+            (law_nm, self.last_nm)
+        } else {
+            (self.last_nm, law_nm)
+        };
         let shown_nm = (law_nm + left_nm)
-            .at_least(law_nm.at_most(self.last_nm).at_most(F::ZERO))
-            .at_most(law_nm.at_least(self.last_nm).at_least(F::ZERO));
+            .at_least(low_nm.at_most(F::ZERO))
+            .at_most(high_nm.at_least(F::ZERO));
         self.way = if left_nm == F::ZERO {
             Way::Free
         } else {

@@ -4,8 +4,10 @@
 use super::bus_map::AHB;
 use super::bus_waits;
 use super::clocks::Rates;
+use super::memory_lag::MemoryLag;
 use super::part::{PAGE, Part, lock};
 use super::waits::Waits;
+use super::{TRIGGER, TRIGGERED};
 use crate::mcu::Access;
 use crate::time::Time;
 use rsemu::core::space::{MemAttrs, MemOps, MemResult};
@@ -43,6 +45,7 @@ pub(crate) struct Bus {
     rcc_place: usize,
     dma: [Arc<Dma>; 2],
     pub(crate) waits: Arc<Waits>,
+    pub(crate) memory_lag: MemoryLag,
     /// A part has been accessed: deadlines and requests may have changed.
     is_touched: AtomicBool,
     /// The setup of a pin may have changed.
@@ -74,6 +77,7 @@ impl Bus {
             rcc,
             dma,
             waits: Arc::default(),
+            memory_lag: MemoryLag::default(),
             is_touched: AtomicBool::new(true),
             pins_changed: AtomicBool::new(false),
             touched: Mutex::default(),
@@ -306,6 +310,13 @@ impl MemOps for Window {
         let offset = u64::from(address - part.base);
         if address >= AHB {
             part.registers.read(offset, into, attrs)?;
+            if !attrs.debug
+                && let Ok(word) = <[u8; 4]>::try_from(&*into)
+            {
+                let word = u32::from_le_bytes(word);
+                let seen = bus.memory_lag.seen(address, word, bus.now());
+                into.copy_from_slice(&seen.to_le_bytes());
+            }
         } else {
             let mut word = [0; 4];
             part.registers.read(offset & !3, &mut word, attrs)?;
@@ -329,6 +340,12 @@ impl MemOps for Window {
             bus.stray(address);
             return Ok(());
         };
+        if address == TRIGGER {
+            // Those that it starts begin to count now.
+            for name in TRIGGERED {
+                bus.touch(name);
+            }
+        }
         let part = &bus.parts[place];
         part.advance(bus.now(), &bus.rates);
         bus.mark(place);

@@ -20,7 +20,7 @@ pub(crate) enum Clock {
     Timers2,
     /// The third output of the PLL.
     Pll48,
-    /// The crystal, 8 MHz.
+    /// The crystal.
     Crystal,
     /// The watchdog's own oscillator.
     Low,
@@ -43,8 +43,6 @@ const CLOCKS: [Clock; 9] = [
 /// Nominal frequency of the watchdog's oscillator, Hz; 17 to 47 kHz on silicon.
 pub(crate) const LOW_HZ: u64 = 32_000;
 
-const CRYSTAL_HZ: u64 = 8_000_000;
-
 /// Units of time in a tick of each clock.
 ///
 /// A rate that does not divide 336 MHz is rounded to whole units: the firmware
@@ -57,14 +55,14 @@ pub(crate) struct Rates {
 }
 
 impl Rates {
-    pub(crate) fn new(tree: Arc<Clocks>) -> Self {
+    pub(crate) fn new(tree: Arc<Clocks>, crystal_hz: u64) -> Self {
         let rates = Self {
             tree,
             generation: AtomicU64::new(u64::MAX),
             units: [const { AtomicU64::new(1) }; CLOCKS.len()],
         };
         rates.set_units(Clock::Low, UNITS_PER_S / LOW_HZ);
-        rates.set_units(Clock::Crystal, UNITS_PER_S / CRYSTAL_HZ);
+        rates.set_units(Clock::Crystal, UNITS_PER_S / crystal_hz.max(1));
         rates.refresh();
         rates
     }

@@ -14,6 +14,7 @@ use super::bus::Window;
 use super::timed_flash::TimedFlash;
 use crate::image::FLASH;
 use crate::observed_ram::ObservedRam;
+use crepitus_protocol::management::EMULATED_SERIAL;
 use rsemu::core::space::{AddressSpace, Mapping, RamStore, Region, RegionRef, RequesterId};
 use std::ops::Range;
 use std::sync::Arc;
@@ -26,9 +27,6 @@ pub(crate) const CCM_BYTES: u64 = 64 << 10;
 
 /// Address of the system memory with number and flash size.
 const SYSTEM: u64 = 0x1fff_7a00;
-
-/// The chip's number: X 1, Y 2, wafer 3, lot "EMUL405".
-const NUMBER: [u8; 12] = *b"\x01\x00\x02\x00\x03EMUL405";
 
 /// The memories that a program can change.
 pub(crate) struct Memory {
@@ -50,7 +48,7 @@ impl Memory {
         let space = Arc::new(AddressSpace::new("core", 32));
         let dma_space = Arc::new(AddressSpace::new("DMA", 32));
         let system = Arc::new(RamStore::new(0x40));
-        write(&system, 0x10, &NUMBER);
+        write(&system, 0x10, &EMULATED_SERIAL);
         write(&system, 0x22, &1024_u16.to_le_bytes());
         let shared = [
             (flash, 0x0800_0000),

@@ -93,6 +93,18 @@ impl<'a> Nets<'a> {
         WireSource::new(Arc::new(wire), id)
     }
 
+    /// A wire to the same pin of several devices of the library.
+    pub(crate) fn to_devices<D: Device>(&self, devices: &[Arc<D>], port: &str) -> WireSource {
+        let id = self.ids.alloc();
+        let wire = devices
+            .iter()
+            .fold(Wire::builder().source(id), |wire, device| {
+                let pin = device.sink(port, &[id]).expect("the device has this pin");
+                wire.sink(pin.sink, pin.line)
+            });
+        WireSource::new(Arc::new(wire.build()), id)
+    }
+
     /// A wire to one of ours.
     pub(crate) fn to(&self, sink: Arc<dyn WireSink>, line: u32) -> WireSource {
         let id = self.ids.alloc();

@@ -84,11 +84,47 @@ fn pin(channel: u32) -> Option<Pin> {
     }
 }
 
+/// Voltage at a pin over time, as share of the converters' reference: a function of the time since its begin, s.
+pub(crate) struct Course {
+    begin: Time,
+    share: Box<dyn Fn(f64) -> f64 + Send>,
+}
+
+impl Course {
+    /// A voltage that changes from `begin` on.
+    pub(crate) fn new(begin: Time, share: impl Fn(f64) -> f64 + Send + 'static) -> Self {
+        Self {
+            begin,
+            share: Box::new(share),
+        }
+    }
+
+    fn at(&self, units: u64) -> f64 {
+        let since = units.saturating_sub(self.begin.units());
+        (self.share)(Time::from_units(since).as_s())
+    }
+}
+
+impl std::fmt::Debug for Course {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Course")
+            .field("begin", &self.begin)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Voltage at a pin.
+#[derive(Debug)]
+enum Voltage {
+    Constant(f64),
+    Over(Course),
+}
+
 /// Voltages at the pins, as share of the converter's reference.
 #[derive(Debug)]
 pub(crate) struct Analog {
     pins: Arc<Pins>,
-    shares: Mutex<BTreeMap<Pin, f64>>,
+    shares: Mutex<BTreeMap<Pin, Voltage>>,
     noise: Mutex<Option<Noise>>,
 }
 
@@ -108,13 +144,23 @@ impl Analog {
 
     /// Sets the voltage at a pin.
     pub(crate) fn set(&self, pin: Pin, share: f64) {
-        lock(&self.shares).insert(pin, share);
+        lock(&self.shares).insert(pin, Voltage::Constant(share));
     }
 
-    /// Voltage that a channel converts, noise included, as share of the reference.
-    fn channel(&self, channel: u32) -> f64 {
+    /// Lets the voltage at a pin change over time.
+    pub(crate) fn set_course(&self, pin: Pin, course: Course) {
+        lock(&self.shares).insert(pin, Voltage::Over(course));
+    }
+
+    /// Voltage that a channel converts at this time, in units, noise included, as share of the reference.
+    fn channel(&self, channel: u32, at: u64) -> f64 {
         let pin = pin(channel).filter(|pin| self.pins.mode(*pin) == Mode::Analog);
-        let share = pin.and_then(|pin| lock(&self.shares).get(&pin).copied());
+        let share = pin.and_then(|pin| {
+            lock(&self.shares).get(&pin).map(|voltage| match voltage {
+                Voltage::Constant(share) => *share,
+                Voltage::Over(course) => course.at(at),
+            })
+        });
         let noise = lock(&self.noise).as_mut().map_or(0.0, Noise::next);
         share.unwrap_or(0.0) + noise
     }
@@ -266,7 +312,7 @@ impl Adc {
     fn happen(&self, state: &mut State, at: u64) {
         let is_due = |sampling: &Sampling| sampling.end.units() == at;
         if let Some(sampling) = state.sampling.take_if(|sampling| is_due(sampling)) {
-            state.sampled = self.analog.channel(sampling.channel);
+            state.sampled = self.analog.channel(sampling.channel, at);
             if state.samplings.len() < KEPT {
                 state.samplings.push(sampling);
             }

@@ -12,6 +12,7 @@
 use crate::chip::part::{Peripheral, lock};
 use crate::chip::pins::Pins;
 use crate::pins::{Mode, Pin};
+use crepitus_device::board::pins::drive;
 use rsemu::core::space::{MemAttrs, MemOps, MemResult};
 use rsemu::core::wire::{Level, WireSource};
 use std::fmt;
@@ -45,14 +46,14 @@ pub(crate) struct Input {
 /// Brake input of TIM1.
 pub(crate) const TIM1: Input = Input {
     timer: "TIM1",
-    pin: Pin::new('B', 12),
-    function: Mode::Alternate(1),
+    pin: Pin::of(&drive::BREAK),
+    function: Mode::of(&drive::BREAK),
 };
 /// Brake input of TIM8.
 pub(crate) const TIM8: Input = Input {
     timer: "TIM8",
-    pin: Pin::new('A', 6),
-    function: Mode::Alternate(3),
+    pin: Pin::of(&drive::COIL_FAULT),
+    function: Mode::of(&drive::COIL_FAULT),
 };
 
 #[derive(Clone, Copy, Debug, Default)]

@@ -10,22 +10,29 @@
 //! read, so the core stops at its next instruction in it
 //! ([`Flash::busy_until`]); timers, DMA and watchdog run on.
 //!
+//! Loads of the core go through the data cache, whose content is in
+//! [`data_cache`](super::data_cache).
+//!
 //! A reset ends an operation in the middle, and leaves what
 //! [`crepitus_virtual_device::nor_flash`] says.
 //!
 //! Not modelled: read-out and write protection, option bytes that are changed,
 //! mass erase, the interrupt; [`Flash::uses_unmodelled_features`] reports their use.
 
+use super::data_cache::DataCache;
 use super::registers::Words;
 use crate::chip::bus::Now;
 use crate::chip::part::{Peripheral, lock};
 use crate::image::FLASH_BYTES;
+use crate::refusal::Refusals;
 use crate::time::Time;
 use crepitus_virtual_device::nor_flash::{Cut, Marginal};
 use rsemu::core::error::BusError;
+use rsemu::core::space::AccessPurpose;
 use rsemu::core::space::{
     AccessConstraints, Mapping, MemAttrs, MemOps, MemResult, Perms, RamStore, Region, RegionRef,
 };
+use rsemu::cpu::arm::v7m::Config;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
@@ -52,6 +59,8 @@ const BSY: u32 = 1 << 16;
 
 /// Bits of ACR that are kept.
 const ACR: u32 = 0x1f07;
+const DCEN: u32 = 1 << 10;
+const DCRST: u32 = 1 << 12;
 
 /// Operation under way.
 #[derive(Clone, Debug)]
@@ -87,6 +96,7 @@ pub(crate) struct Flash {
     /// Number of changes of the content.
     version: AtomicU64,
     state: Mutex<State>,
+    data_cache: DataCache,
     option_bytes: u32,
     now: Now,
     /// End of the operation that is under way; 0 if none is.
@@ -108,12 +118,18 @@ fn sector(number: u32) -> Option<(Range<usize>, Time)> {
 }
 
 impl Flash {
-    pub(crate) fn new(image: &[u8], option_bytes: u32, now: Now) -> Arc<Self> {
+    pub(crate) fn new(
+        image: &[u8],
+        option_bytes: u32,
+        now: Now,
+        refusals: Arc<Refusals>,
+    ) -> Arc<Self> {
         let array = RamStore::new(FLASH_BYTES as u64);
         let flash = Self {
             array: Arc::new(array),
             version: AtomicU64::new(0),
             state: Mutex::default(),
+            data_cache: DataCache::new(refusals),
             option_bytes,
             now,
             busy_until: AtomicU64::new(0),
@@ -129,7 +145,7 @@ impl Flash {
     /// the controller.
     pub(crate) fn region(self: &Arc<Self>) -> RegionRef {
         let bytes = FLASH_BYTES as u64;
-        let read = Region::ram("flash", self.array.clone());
+        let read = Region::io("flash", bytes, Arc::new(Loads(self.clone())));
         let write = Region::io("flash controller", bytes, Arc::new(Writes(self.clone())));
         let parts = vec![
             Mapping::new(read, 0).with_perms(Perms::RX),
@@ -151,6 +167,14 @@ impl Flash {
     /// The memory, for reading while [`Self::busy_until`] permits it.
     pub(crate) fn array(&self) -> Arc<RamStore> {
         self.array.clone()
+    }
+
+    /// Takes a load of the core, which the data cache may answer.
+    #[inline]
+    pub(crate) fn load(&self, offset: u64, bytes: usize) {
+        if let Ok(offset) = usize::try_from(offset) {
+            self.data_cache.load(offset, bytes);
+        }
     }
 
     /// A number that is another after each change of the content.
@@ -196,9 +220,11 @@ impl Flash {
                 // Programming clears bits, and sets none.
                 let new = old.iter().zip(&bytes).map(|(old, new)| old & new);
                 self.put(at, &new.collect::<Vec<_>>());
+                self.data_cache.programmed(at..at + bytes.len());
             }
             Operation::Erase { range } => {
                 self.put(range.start, &vec![0xff; range.len()]);
+                self.data_cache.erased(&range);
                 state.marginal.retain(|(marginal, _)| *marginal != range);
             }
         }
@@ -299,6 +325,7 @@ impl Peripheral for Flash {
             self.cut(&mut state, running);
         }
         self.busy_until.store(0, Relaxed);
+        self.data_cache.set(false, true);
         for (range, marginal) in &mut state.marginal {
             let mut bytes = self.content(range.clone());
             marginal.start(range.start, &mut bytes);
@@ -327,13 +354,46 @@ impl Words for Flash {
     fn write(&self, offset: u32, value: u32) {
         let mut state = lock(&self.state);
         match offset {
-            0x00 => state.acr = value & ACR,
+            0x00 => {
+                state.acr = value & ACR;
+                let is_set = |bit| value & bit != 0;
+                self.data_cache.set(is_set(DCEN), is_set(DCRST));
+            }
             0x04 => Self::write_key(&mut state, value),
             0x0c => state.sr &= !value | BSY,
             0x10 => self.write_control(&mut state, value),
             0x08 | 0x14 => self.asked_too_much.store(true, Relaxed),
             _ => {}
         }
+    }
+}
+
+/// Fetches and loads from flash.
+struct Loads(Arc<Flash>);
+
+impl std::fmt::Debug for Loads {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("flash")
+    }
+}
+
+impl MemOps for Loads {
+    fn read(&self, offset: u64, into: &mut [u8], attrs: MemAttrs) -> MemResult {
+        // The DMA has no cache; instructions and debuggers have another way.
+        let is_core = attrs.requester == Config::CORTEX_M4F.requester;
+        if is_core && !attrs.debug && attrs.purpose != AccessPurpose::FETCH {
+            self.0.load(offset, into.len());
+        }
+        self.0.array.read_at(offset, into)
+    }
+
+    fn write(&self, _: u64, _: &[u8], _: MemAttrs) -> MemResult {
+        // The controller takes it.
+        Err(BusError::Unassigned)
+    }
+
+    fn constraints(&self) -> AccessConstraints {
+        AccessConstraints::ANY
     }
 }
 

@@ -123,6 +123,12 @@ impl Usart {
         lock(&self.state).arriving.push_back(character);
     }
 
+    /// Time of the next character that arrives, in units.
+    pub(crate) fn next_arrival(&self) -> Option<u64> {
+        let state = lock(&self.state);
+        state.arriving.front().map(|character| character.at)
+    }
+
     /// Takes the characters sent since the last call.
     pub(crate) fn take_sent(&self) -> Vec<Character> {
         std::mem::take(&mut *lock(&self.sent))

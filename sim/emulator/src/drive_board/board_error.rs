@@ -1,6 +1,7 @@
 //! Mismatches between the image and the board.
 
 use crate::pins::{Pin, PinSetup};
+use crate::refusal::Refusal;
 
 /// A mismatch between the image and the board's wiring.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -14,7 +15,7 @@ pub enum BoardError {
         /// Setup of the pin.
         is: PinSetup,
         /// The other end of its wire.
-        to: &'static str,
+        to: String,
         /// Mode and pull that this needs.
         needs: String,
     },
@@ -63,6 +64,18 @@ pub enum BoardError {
         /// The channel.
         channel: u32,
     },
+    /// An input is sampled for a shorter time than its source needs.
+    #[error("ADC{converter} samples channel {channel} for {ns} ns; its source needs {needs_ns} ns")]
+    ShortSampling {
+        /// The converter, from 1 on.
+        converter: u32,
+        /// The channel.
+        channel: u32,
+        /// Sampling time, ns.
+        ns: u64,
+        /// That of the board description, ns.
+        needs_ns: u64,
+    },
     /// The samples of a current are not centred on the middle of the tick.
     #[error(
         "ADC{converter} samples {off_ns} ns off the middle of the tick; at most 100 ns are allowed"
@@ -84,6 +97,14 @@ pub enum BoardError {
     Baud {
         /// Duration of a character as the program has set it, in units of time.
         units: u64,
+    },
+    /// A program uses its chip in a way that the manual forbids, and has been stopped.
+    #[error("the core of {controller} is stopped: {refusal}")]
+    Refused {
+        /// `drive` or `comms`.
+        controller: &'static str,
+        /// The use.
+        refusal: Refusal,
     },
     /// The counter does not follow the encoder.
     #[error("TIM5 has counted {counted} while the encoder turned by {turned}")]

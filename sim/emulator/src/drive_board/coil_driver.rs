@@ -11,8 +11,9 @@ use super::pin_map::{COIL_IN1, COIL_IN2};
 use crate::pins::{Mode, Pin, Pull};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
+use crepitus_device::board::COIL_TIMER;
 
-const TIM8: u32 = 0x4001_0400;
+const TIM8: u32 = COIL_TIMER.base;
 const CR1: u32 = TIM8;
 const CR2: u32 = TIM8 + 0x04;
 const CCMR2: u32 = TIM8 + 0x1c;

@@ -1,6 +1,7 @@
 //! The other end of the drive's link.
 
 use crate::character::Character;
+use crate::refusal::Refusal;
 use crate::time::Time;
 
 /// Comms, as the drive's board sees it.
@@ -15,4 +16,9 @@ pub trait CommsSide {
 
     /// Stops it, its line as it is.
     fn set_hung(&mut self, is_hung: bool);
+
+    /// The use of its chip that has stopped it for good.
+    fn refusal(&self) -> Option<Refusal> {
+        None
+    }
 }

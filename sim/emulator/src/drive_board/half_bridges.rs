@@ -13,24 +13,27 @@
 //!
 //! (RM0090, output control bits of complementary channels.) A pin that is not
 //! driven has the level of its internal resistor; a pin that is not connected
-//! to the timer, what its port says. The voltage is the mean of a period,
-//! without dead time.
+//! to the timer, what its port says. The voltage is the mean of a period by
+//! the references; the leg takes off what the scene's dead time costs.
 
 use super::board_error::BoardError;
 use super::pin_map::{HALF_A, HALF_B};
 use crate::pins::{Mode, Pin, Pull};
 use crate::stm32f405::Stm32f405;
 use crate::time::Time;
+use crepitus_device::board::BRIDGE_TIMER;
+use crepitus_device::board::pins::drive;
 use crepitus_virtual_device::leg::Terminals;
 
-const CR1: u32 = 0x4001_0000;
-const CR2: u32 = 0x4001_0004;
-const CCMR1: u32 = 0x4001_0018;
-const CCER: u32 = 0x4001_0020;
-pub(super) const CNT: u32 = 0x4001_0024;
-const ARR: u32 = 0x4001_002c;
-const CCR1: u32 = 0x4001_0034;
-const BDTR: u32 = 0x4001_0044;
+const BASE: u32 = BRIDGE_TIMER.base;
+const CR1: u32 = BASE;
+const CR2: u32 = BASE + 0x04;
+const CCMR1: u32 = BASE + 0x18;
+const CCER: u32 = BASE + 0x20;
+pub(super) const CNT: u32 = BASE + 0x24;
+const ARR: u32 = BASE + 0x2c;
+const CCR1: u32 = BASE + 0x34;
+const BDTR: u32 = BASE + 0x44;
 
 const CEN: u32 = 1;
 const DIR: u32 = 1 << 4;
@@ -144,7 +147,7 @@ impl<'a> Timer<'a> {
     fn level(&self, pin: Pin, driven: Option<bool>) -> Option<bool> {
         let setup = self.mcu.pin_setup(pin);
         let driven = match setup.mode {
-            Mode::Alternate(1) => driven,
+            mode if mode == Mode::of(&drive::UPPER_A) => driven,
             Mode::Output => Some(self.mcu.pin(pin)),
             _ => None,
         };

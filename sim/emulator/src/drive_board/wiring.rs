@@ -7,150 +7,48 @@
 use super::board_error::BoardError;
 use super::coil_driver;
 use super::half_bridges::{self, Quiet};
-use super::pin_map::{
-    BREAK, COIL, COIL_FAULT, COIL_IN1, COIL_IN2, COMMS_LINE, HALF_A, HALF_B, JOINT, LINE,
-    LINE_BACK, MONITOR, MOTOR, SENSOR, SUPPLY,
-};
 use crate::mcu::Sampling;
 use crate::pins::{Mode, Pin, Pull};
 use crate::stm32f405::Stm32f405;
-use crate::time::Time;
-
-/// The converters, from 1 on, and the pins that they convert around the middle of a
-/// tick.
-const CONVERTED: [(u32, Pin); 6] = [
-    (1, SENSOR),
-    (2, MONITOR),
-    (3, SUPPLY),
-    (3, MOTOR),
-    (3, JOINT),
-    (3, COIL),
-];
+use crate::time::{Time, UNITS_PER_S};
+use crepitus_device::board::analog::{CLOCK_HZ, INPUTS, Input};
+use crepitus_device::board::pins::drive;
+use crepitus_device::board::{self, ENCODER_TIMER, LINK_BAUD};
 
 /// Converters of the currents.
 const CURRENTS: [u32; 2] = [1, 2];
 
 /// The encoder's counter.
-const COUNTER: u32 = 0x4000_0c24;
+const COUNTER: u32 = ENCODER_TIMER.base + 0x24;
 
-/// Units of time of ten bits at 4.2 Mbaud, and the most that a receiver
-/// stands: 2 %.
-const CHARACTER_UNITS: u64 = 800;
-const MOST_OFF_UNITS: u64 = 16;
+/// Units of time of ten bits, and the most that a receiver stands: 2 %.
+const CHARACTER_UNITS: u64 = 10 * UNITS_PER_S / LINK_BAUD as u64;
+const MOST_OFF_UNITS: u64 = CHARACTER_UNITS / 50;
 
 /// Time between the middle of a tick and that of all samplings of a current, at most:
 /// 0.1 µs.
 const MOST_OFF_MIDDLE: Time = Time::from_units(336 / 10);
 
-/// A wire between a pin and a part of the board.
-struct Wire {
-    pin: Pin,
-    /// The part.
-    to: &'static str,
-    mode: Mode,
-    /// `None`: any.
-    pull: Option<Pull>,
-}
-
-const fn wire(pin: Pin, to: &'static str, mode: Mode, pull: Option<Pull>) -> Wire {
-    Wire {
-        pin,
-        to,
-        mode,
-        pull,
-    }
-}
-
-/// All wires, as docs/hardware.md has them.
-const WIRES: [Wire; 21] = {
-    use Mode::{Alternate, Analog, Input, Output};
-    const DOWN: Option<Pull> = Some(Pull::Down);
-    const UP: Option<Pull> = Some(Pull::Up);
-    [
-        wire(
-            HALF_A[0],
-            "upper switch of half A, TIM1 CH1",
-            Alternate(1),
-            DOWN,
-        ),
-        wire(
-            HALF_A[1],
-            "lower switch of half A, TIM1 CH1N",
-            Alternate(1),
-            DOWN,
-        ),
-        wire(
-            HALF_B[0],
-            "upper switch of half B, TIM1 CH2",
-            Alternate(1),
-            DOWN,
-        ),
-        wire(
-            HALF_B[1],
-            "lower switch of half B, TIM1 CH2N",
-            Alternate(1),
-            DOWN,
-        ),
-        wire(BREAK, "break line, TIM1 BKIN", Alternate(1), DOWN),
-        wire(SENSOR, "amplifier of the sensor, ADC1 IN10", Analog, None),
-        wire(MONITOR, "amplifier of the monitor, ADC2 IN11", Analog, None),
-        wire(SUPPLY, "divider of the supply, ADC3 IN13", Analog, None),
-        wire(MOTOR, "temperature of the motor, ADC3 IN2", Analog, None),
-        wire(JOINT, "sensor of the joint, ADC3 IN12", Analog, None),
-        wire(
-            COIL_IN1,
-            "IN1 of the coil's driver, TIM8 CH3",
-            Alternate(3),
-            DOWN,
-        ),
-        wire(
-            COIL_IN2,
-            "IN2 of the coil's driver, TIM8 CH4",
-            Alternate(3),
-            DOWN,
-        ),
-        wire(
-            COIL_FAULT,
-            "nFAULT of the coil's driver, TIM8 BKIN",
-            Alternate(3),
-            DOWN,
-        ),
-        wire(COIL, "amplifier of the coil, ADC3 IN3", Analog, None),
-        wire(COMMS_LINE, "enable line of comms", Input, DOWN),
-        wire(Pin::new('A', 0), "encoder A, TIM5 CH1", Alternate(2), UP),
-        wire(Pin::new('A', 1), "encoder B, TIM5 CH2", Alternate(2), UP),
-        wire(LINE, "enable line", Output, None),
-        wire(LINE_BACK, "read-back of the enable line", Input, DOWN),
-        wire(
-            Pin::new('C', 6),
-            "link to comms, USART6 TX",
-            Alternate(8),
-            None,
-        ),
-        wire(
-            Pin::new('C', 7),
-            "link from comms, USART6 RX",
-            Alternate(8),
-            UP,
-        ),
-    ]
-};
-
 /// Reports every pin and every switch that does not match.
 pub(super) fn check(mcu: &Stm32f405, mut report: impl FnMut(BoardError)) {
-    for wire in &WIRES {
-        let is = mcu.pin_setup(wire.pin);
-        let is_pulled = wire.pull.is_none_or(|pull| pull == is.pull);
-        if is.mode != wire.mode || !is_pulled || is.is_open_drain {
-            let pull = wire
-                .pull
-                .map(|pull| format!(", {pull}"))
-                .unwrap_or_default();
+    for wire in drive::ALL {
+        let (pin, mode) = (Pin::of(wire), Mode::of(wire));
+        let is = mcu.pin_setup(pin);
+        let pull = match wire.pull {
+            board::Pull::Any => None,
+            board::Pull::Up => Some(Pull::Up),
+            board::Pull::Down => Some(Pull::Down),
+        };
+        let is_pulled = pull.is_none_or(|pull| pull == is.pull);
+        if is.mode != mode || !is_pulled || is.is_open_drain {
+            let pull = pull.map(|pull| format!(", {pull}")).unwrap_or_default();
+            let named = [wire.part, wire.function];
+            let named: Vec<_> = named.into_iter().filter(|it| !it.is_empty()).collect();
             report(BoardError::Pin {
-                pin: wire.pin,
+                pin,
                 is,
-                to: wire.to,
-                needs: format!("{}{pull}", wire.mode),
+                to: named.join(", "),
+                needs: format!("{mode}{pull}"),
             });
         }
     }
@@ -172,11 +70,24 @@ pub(super) fn check_samplings(
 ) {
     for sampling in samplings {
         let (converter, channel) = (sampling.converter, sampling.channel);
-        let is_wired =
-            |(number, pin): &(u32, Pin)| *number == converter && Some(*pin) == sampling.pin;
-        if !CONVERTED.iter().any(is_wired) {
+        let is_wired = |input: &&Input| {
+            let pin = Pin::of(&input.connection);
+            u32::from(input.converter) == converter && Some(pin) == sampling.pin
+        };
+        let Some(input) = INPUTS.iter().find(is_wired) else {
             report(BoardError::Channel { converter, channel });
             continue;
+        };
+        let sampled = sampling.end.units().saturating_sub(sampling.begin.units());
+        let needed = u64::from(input.sampling_clocks) * UNITS_PER_S / u64::from(CLOCK_HZ);
+        if sampled < needed {
+            let [ns, needs_ns] = [sampled, needed].map(|units| units * 1_000 / 336);
+            report(BoardError::ShortSampling {
+                converter,
+                channel,
+                ns,
+                needs_ns,
+            });
         }
         let is_quiet =
             sampling.begin + quiet.before >= middle && sampling.converted <= middle + quiet.after;

@@ -133,8 +133,6 @@ impl FastPath {
             select_stack(&mut registers);
             core.set_regs(registers);
             if context.is_counted {
-                // The library's counter does not know of waits.
-                let cycles = cycles - executor.timing.waits();
                 core.with_sys(|sys| sys.tick_cyccnt(cycles));
             }
         }

@@ -2,8 +2,10 @@
 
 use super::{CORE, Stm32f405};
 use crate::character::Character;
+use crate::devices::adc::Course;
 use crate::mcu::{Access, Pin, Reset, Sampling, Watch};
 use crate::pins::PinSetup;
+use crate::refusal::Refusal;
 use crate::state_hash::Hash;
 use crate::time::Time;
 use rsemu::core::device::{Device, ResetKind};
@@ -99,6 +101,11 @@ impl Stm32f405 {
         self.chip.analog.set(pin, share);
     }
 
+    /// Lets the voltage at a pin change over time.
+    pub(crate) fn set_analog_course(&mut self, pin: Pin, course: Course) {
+        self.chip.analog.set_course(pin, course);
+    }
+
     /// Takes the sampling intervals of the converters since the last call.
     pub fn take_samplings(&mut self) -> Vec<Sampling> {
         let adcs = self.chip.adcs.0.iter();
@@ -187,6 +194,11 @@ impl Stm32f405 {
         hash.bytes(&self.now.to_le_bytes());
         hash.bytes(&self.cycles.to_le_bytes());
         hash.value()
+    }
+
+    /// The first use of the chip that its manual forbids: since then the core stands.
+    pub fn refusal(&self) -> Option<Refusal> {
+        self.chip.refusals.first()
     }
 
     /// Features used by the program that are not modelled; unmapped addresses,

@@ -2,6 +2,7 @@
 
 use crate::bench::Bench;
 use crepitus_emulator::Reset;
+use crepitus_emulator::refusal::Refusal;
 
 const FLASH: u32 = 0x4002_3c00;
 const KEYR: u32 = FLASH + 0x04;
@@ -140,4 +141,76 @@ fn an_erasure_that_is_cut_off_near_its_end_does_not_last() {
         bench.0.set_hung(true);
         assert!(blank(&mut bench));
     }
+}
+
+const ACR: u32 = FLASH;
+const DCEN: u32 = 1 << 10;
+const DCRST: u32 = 1 << 12;
+
+/// A sector with content, loaded through the data cache (or not), erased.
+fn erased_after_a_load(dcen: u32) -> Bench {
+    let mut bench = unlocked();
+    bench.0.patch_flash(PLACE, &[0x5a; 32]);
+    bench.write(ACR, dcen);
+    bench.read(PLACE + 4);
+    erase(&mut bench);
+    bench.run_us(401_000);
+    assert_eq!(bench.0.refusal(), None);
+    bench
+}
+
+#[test]
+fn a_load_from_a_line_that_is_older_than_the_erasure_stops_the_core() {
+    let mut bench = erased_after_a_load(DCEN);
+    // Another line, which the cache cannot hold.
+    bench.read(PLACE + 16);
+    assert_eq!(bench.0.refusal(), None);
+    bench.read(PLACE + 12);
+    let address = PLACE + 12;
+    let refusal = Refusal::StaleData { address };
+    assert_eq!(bench.0.refusal(), Some(refusal));
+    let text = refusal.to_string();
+    assert!(text.contains("0x0800800c"), "{text}");
+    // For good.
+    bench.0.reset(Reset::Pin);
+    assert_eq!(bench.0.refusal(), Some(refusal));
+    let (before, pc) = (bench.0.cycles(), bench.0.program_counter());
+    bench.run_us(100);
+    assert_eq!((bench.0.cycles(), bench.0.program_counter()), (before, pc));
+}
+
+#[test]
+fn what_is_not_in_the_cache_is_not_stale() {
+    let mut off = erased_after_a_load(0);
+    off.write(ACR, DCEN);
+    off.read(PLACE);
+    assert_eq!(off.0.refusal(), None, "never enabled");
+    let mut disabled = erased_after_a_load(DCEN);
+    disabled.write(ACR, 0);
+    disabled.read(PLACE);
+    assert_eq!(disabled.0.refusal(), None, "disabled");
+    let mut reset = erased_after_a_load(DCEN);
+    for acr in [0, DCRST, 0, DCEN] {
+        reset.write(ACR, acr);
+    }
+    reset.read(PLACE);
+    assert_eq!(reset.0.refusal(), None, "reset");
+    // Programming writes the cache, too: just the bytes that are programmed.
+    let mut programmed = erased_after_a_load(DCEN);
+    programmed.write(CR, PG | WORDS);
+    programmed.write(PLACE, 0x1234_5678);
+    programmed.run_us(20);
+    programmed.read(PLACE);
+    assert_eq!(programmed.0.refusal(), None, "programmed");
+    programmed.read(PLACE + 4);
+    assert!(programmed.0.refusal().is_some());
+}
+
+#[test]
+fn the_cache_is_reset_only_while_it_is_disabled() {
+    let mut bench = unlocked();
+    bench.write(ACR, DCEN | DCRST);
+    let refusal = Refusal::CacheResetWhileEnabled;
+    assert_eq!(bench.0.refusal(), Some(refusal));
+    assert!(refusal.to_string().contains("clear DCEN first"));
 }

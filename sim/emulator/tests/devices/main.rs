@@ -2,6 +2,7 @@
 //! registers as one would.
 
 mod bench;
+mod dma;
 mod flash;
 mod otg;
 mod usart;

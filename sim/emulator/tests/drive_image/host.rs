@@ -1,6 +1,7 @@
 //! A host at the USB end of the native comms.
 
 use crate::locks::LockCheck;
+use crate::times::Books;
 use crepitus_device::usb_port::HostBytes;
 use crepitus_emulator::drive_board::NativeComms;
 use crepitus_emulator::firmware::{Program, image_for_test};
@@ -68,6 +69,8 @@ pub(crate) struct Host {
     pub(crate) blocks: Vec<Block>,
     /// Checks every step of the core.
     pub(crate) locks: Option<LockCheck>,
+    /// Books of every step of the core.
+    pub(crate) books: Option<Books>,
     /// A test breaks what the board checks, on purpose.
     pub(crate) breaks_board: bool,
 }
@@ -103,6 +106,22 @@ impl Host {
         if flash == Flash::Modelled {
             host.board.mcu_mut().model_flash();
         }
+        host.boot();
+        host
+    }
+
+    /// [`Self::timed`] with books from the first instruction on.
+    pub(crate) fn with_books(
+        image: &Image,
+        scene: &Scene,
+        registers: &[u32],
+        flash: Flash,
+    ) -> Self {
+        let mut host = Self::switched_on(image, scene, registers);
+        if flash == Flash::Modelled {
+            host.board.mcu_mut().model_flash();
+        }
+        host.books = Some(Books::default());
         host.boot();
         host
     }
@@ -155,6 +174,7 @@ impl Host {
             decoded: 0,
             blocks: Vec::new(),
             locks: None,
+            books: None,
             breaks_board: false,
         }
     }
@@ -172,9 +192,10 @@ impl Host {
     pub(crate) fn run(&mut self, ticks: u64) {
         for _ in 0..ticks {
             self.renew();
-            match &mut self.locks {
-                Some(locks) => self.board.watch(1, locks),
-                None => self.board.run(1),
+            match (&mut self.locks, &mut self.books) {
+                (Some(locks), _) => self.board.watch(1, locks),
+                (None, Some(books)) => self.board.watch(1, books),
+                (None, None) => self.board.run(1),
             }
             self.hear();
         }
@@ -187,6 +208,13 @@ impl Host {
             self.board.watch(1, watch);
             self.hear();
         }
+    }
+
+    /// A tick of the board by other means.
+    pub(crate) fn with_board(&mut self, tick: impl FnOnce(&mut DriveBoard)) {
+        self.renew();
+        tick(&mut self.board);
+        self.hear();
     }
 
     /// Renews the lease, when it is time.
@@ -312,11 +340,15 @@ impl Host {
 
     /// Address at which the idle loop continues after it has slept.
     pub(crate) fn idle_pc(&mut self) -> u32 {
+        let mut last = None;
         for _ in 0..100 {
             let mcu = self.board.mcu();
-            if mcu.exception() == 0 {
-                return mcu.program_counter();
+            let now = (mcu.exception() == 0).then(|| mcu.program_counter());
+            // Where it is twice it sleeps: no place of a condition before it.
+            if let Some(counter) = now.filter(|_| now == last) {
+                return counter;
             }
+            last = now.or(last);
             self.board.half(None);
         }
         panic!("the idle loop does not run");

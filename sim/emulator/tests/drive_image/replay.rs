@@ -9,8 +9,9 @@
 use crate::host::{Flash, Host, examination, image};
 use crate::symptoms::{self, CASES, Case, PERIOD_TICKS, SYMPTOMS};
 use crepitus_device::Drive;
+use crepitus_device::board::LARGEST_COIL_DUTY;
 use crepitus_device::drive::Boot;
-use crepitus_device::drive::coil::{CoilOutput, LARGEST_COIL_DUTY};
+use crepitus_device::drive::coil::CoilOutput;
 use crepitus_device::drive::command::{Inputs, Outputs};
 use crepitus_device::drive::motor::Bridge;
 use crepitus_device::drive::slow_checks::SlowInput;

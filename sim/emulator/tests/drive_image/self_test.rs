@@ -61,6 +61,20 @@ fn option_bytes_of_another_board_are_a_fault_that_stays() {
     }
 }
 
+/// Measured by the internal oscillator, on which the drive runs then. Those that
+/// are between two, or near none, are refused, too.
+#[test]
+fn another_crystal_is_a_fault_that_stays() {
+    let Some(mut image) = sealed() else { return };
+    for crystal_hz in [12_000_000, 16_000_000, 25_000_000, 4_000_000, 9_000_000] {
+        image.crystal_hz = crystal_hz;
+        stays(&image, Fault::DriveCrystal);
+    }
+    // That of a bad piece is not.
+    image.crystal_hz = 7_998_000;
+    assert_eq!(started(&image).1, 0);
+}
+
 /// An image whose start ends in a fault that cannot be cleared.
 fn stays(image: &Image, fault: Fault) {
     let (mut host, found) = started(image);

@@ -111,14 +111,14 @@ pub(crate) const CASES: [Case; 10] = [
         symptom: "clasp-knife",
         settings: "onset_deg = 4.0\nrelease_deg = 8.0\nrearm_deg = 2.0\n",
         phases: &["building", "fallen"],
-        most_cycles: 600,
+        most_cycles: 630,
     },
     Case {
         name: "clonus",
         symptom: "clonus",
         settings: "hold_deg = 5.0\nhysteresis_deg = 1.0\ndelay_s = 0.01\nfrequency_hz = 10.0\n",
         phases: &["beating"],
-        most_cycles: 480,
+        most_cycles: 510,
     },
     Case {
         name: "texture",
@@ -139,14 +139,14 @@ pub(crate) const CASES: [Case; 10] = [
         symptom: "spasticity",
         settings: "form = \"reflex\"\nthreshold_deg = 6.0\ngain_nm_per_rad = 4.0\nvelocity_shift_s = 0.1\ntorque_nm = 1.0\n",
         phases: &["reflex", "reflex-at-its-largest"],
-        most_cycles: 500,
+        most_cycles: 520,
     },
     Case {
         name: "clasp-knife, by torque",
         symptom: "clasp-knife",
         settings: "trigger = \"torque\"\nrelease_torque_nm = 0.9\nonset_deg = 4.0\nrelease_deg = 8.0\nrearm_deg = 2.0\n",
         phases: &["building", "fallen"],
-        most_cycles: 600,
+        most_cycles: 660,
     },
 ];
 
@@ -452,7 +452,8 @@ fn worst_while_committing(host: &mut Host, values: Values) -> u64 {
     };
     host.request(Operation::Commit { base, values });
     let mut cycles = Cycles::default();
-    host.watch(600, &mut cycles);
+    // The idle loop has an eighth of a tick to prepare it.
+    host.watch(1200, &mut cycles);
     let now = host.blocks.last().expect("a block").revision;
     assert_ne!(now, base, "not applied");
     cycles.worst_busy_cycles()

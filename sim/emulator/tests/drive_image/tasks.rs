@@ -18,10 +18,10 @@ const TICK_UNITS: u64 = 16_800;
 
 /// Limits of a run with the modelled flash, cycles: about 3 % above what was
 /// measured, for `link` while a commit arrives.
-const SAMPLE_CYCLES: u64 = 105;
-const COMMAND_CYCLES: u64 = 2_100;
-const RENDER_CYCLES: u64 = 1_275;
-const LINK_CYCLES: u64 = 1_750;
+const SAMPLE_CYCLES: u64 = 140;
+const COMMAND_CYCLES: u64 = 2_315;
+const RENDER_CYCLES: u64 = 1_375;
+const LINK_CYCLES: u64 = 1_850;
 
 /// Ticks that are watched.
 const TICKS: u64 = 1_000;
@@ -106,7 +106,7 @@ fn a_task_gives_way_at_once_to_a_higher_one() {
     // interrupt has come: then the second of these has interrupted the first.
     for (from_ns, until_ns, below, above) in [
         (25_700, 55_800, RENDER, COMMAND),
-        (15_000, 25_400, LINK, SAMPLE),
+        (16_000, 25_400, LINK, SAMPLE),
     ] {
         let mut host = Host::new(&image, &examination());
         host.arm();

@@ -2,6 +2,8 @@
 //! running image, one at a time.
 
 use crate::host::{Host, examination, image};
+use crepitus_protocol::counters::DriveCounter;
+use crepitus_protocol::host::{Answer, Operation};
 
 const GPIOA_MODER: u32 = 0x4002_0000;
 const GPIOB_PUPDR: u32 = 0x4002_040c;
@@ -14,12 +16,13 @@ const TIM1_CCR1: u32 = 0x4001_0034;
 const TIM3_CNT: u32 = 0x4000_0424;
 const TIM5_CCER: u32 = 0x4000_0c20;
 const ADC1_SQR3: u32 = 0x4001_2034;
+const ADC3_SMPR2: u32 = 0x4001_2210;
 const USART6_BRR: u32 = 0x4001_1408;
 
 /// Register, its new value from the old one, and what the board says.
 type Change = (u32, fn(u32) -> u32, &'static str);
 
-const CHANGES: [Change; 16] = [
+const CHANGES: [Change; 17] = [
     (
         GPIOA_MODER,
         |was| was & !3,
@@ -89,6 +92,11 @@ const CHANGES: [Change; 16] = [
         "ADC1 samples channel 11, to which none of its inputs is wired",
     ),
     (
+        ADC3_SMPR2,
+        |_| 0,
+        "ADC3 samples channel 3 for 142 ns; its source needs 714 ns",
+    ),
+    (
         USART6_BRR,
         |_| 0x15,
         "a character of USART6 takes 840 units of time; one of the link takes 800",
@@ -152,4 +160,53 @@ fn outputs_that_nothing_drives_are_named() {
         .collect();
     let says = "a switch of half A is neither driven nor pulled down";
     assert!(errors.iter().any(|error| error == says), "{errors:?}");
+}
+
+/// The bridge's timer starts those of the coil and of the tasks in the same clock, however long the core
+/// waits for flash: no store of the program enables them.
+#[test]
+fn timers_start_together() {
+    const STARTED: [(u32, &str); 3] = [
+        (TIM3_CNT - 0x24, "TIM3"),
+        (0x4000_0800, "TIM4"),
+        (0x4001_0400, "TIM8"),
+    ];
+    let Some(image) = image() else { return };
+    for models_flash in [false, true] {
+        let mut host = Host::new(&image, &examination());
+        let mcu = host.board.mcu_mut();
+        if models_flash {
+            mcu.model_flash();
+        }
+        mcu.listen(&STARTED.map(|(cr1, _)| cr1));
+        host.run(1_000);
+        let mcu = host.board.mcu_mut();
+        let stores = mcu.take_accesses();
+        let enables = stores.iter().filter(|it| it.is_write && it.value & 1 == 1);
+        assert_eq!(enables.count(), 0);
+        for (cr1, name) in STARTED {
+            assert_eq!(mcu.peek(cr1).map(|word| word & 1), Some(1), "{name}");
+        }
+        // Centre-aligned both, they count alike.
+        let counts = [TIM1_CR1, 0x4001_0400].map(|base| mcu.load(base + 0x24));
+        assert_eq!(counts[0], counts[1]);
+        assert!(host.board.errors().is_empty(), "{:?}", host.board.errors());
+    }
+}
+
+/// A byte that the stream has counted is not taken before it is in memory.
+#[test]
+fn a_byte_that_is_not_in_memory_yet_is_left() {
+    let Some(image) = image() else { return };
+    let mut host = Host::new(&image, &examination());
+    host.board.mcu_mut().set_memory_lag(24);
+    host.run(1_000);
+    host.arm();
+    host.run(20_000);
+    let Ok(Answer::Counters(counters)) = host.ask(Operation::Counters) else {
+        panic!("no counters");
+    };
+    let count = |counter: DriveCounter| counters.drive[counter.index()];
+    assert!(count(DriveCounter::Frames) > 900);
+    assert_eq!(count(DriveCounter::Discarded), 0);
 }

@@ -1,12 +1,15 @@
 //! Faults between the two images and their host: torque is off in the
 //! time of the fault table, and the device recovers while the other side runs on.
 
-use crate::host::{Host, MS, arm, boards, run, ticks_until_off, under_torque};
+use crate::host::{
+    Host, MS, arm, boards, client, images, leg, run, scene, ticks_until_off, under_torque,
+};
 use crepitus_client::{Error, Event, Transport as _};
-use crepitus_emulator::Reset;
 use crepitus_emulator::drive_board::CommsSide as _;
+use crepitus_emulator::{Pair, Reset};
 use crepitus_protocol::State;
 use crepitus_protocol::fault::{FAULTS, Fault};
+use crepitus_scene::values::values;
 use std::time::Duration;
 
 /// The table's time, ticks.
@@ -181,4 +184,24 @@ fn a_host_that_does_not_read() {
         accounting.received() + accounting.dropped_by_device() + accounting.lost_on_line()
     );
     assert_eq!(host.status().expect("a status").state, State::Armed);
+}
+
+/// Each controller tells for itself. The internal oscillator of the emulated chip is exact; one of silicon may be too far
+/// off for USB.
+#[test]
+fn a_wrong_crystal_is_named_by_the_controller_that_has_it() {
+    let Some(images) = images() else { return };
+    let values = values(&scene()).expect("a scene for the device");
+    let crystal = [Fault::DriveCrystal, Fault::CommsCrystal];
+    for wrong in [0, 1] {
+        let mut images = images.clone();
+        images[wrong].crystal_hz = 12_000_000;
+        let [drive, comms] = &images;
+        let mut host = client(Pair::of(drive, comms, leg(), &values));
+        run(&mut host, 30);
+        let mut expected = [0; 2];
+        expected[wrong] = crystal[wrong].code();
+        assert_eq!(faults(&mut host), expected);
+        assert!(host.arm().is_err());
+    }
 }

@@ -139,6 +139,9 @@ pub(crate) fn ticks_until_off(host: &mut Host, most: u64, is_pumped: bool) -> u6
 impl Cable {
     fn tick(&mut self) {
         self.pair.tick();
+        self.pair
+            .check()
+            .expect("a program that keeps to the manual");
         if let Some(fails) = &mut self.power_fails
             && fails(self.pair.boards())
         {

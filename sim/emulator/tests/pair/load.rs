@@ -26,5 +26,5 @@ fn comms_has_time_left_while_it_streams() {
     run(&mut host, 20);
     let streaming = load(&mut host);
     println!("comms: {quiet:.1} % of its core, {streaming:.1} % while it streams (0 wait states)");
-    assert!(quiet < 39.0 && streaming < 54.0);
+    assert!(quiet < 39.0 && streaming < 56.5);
 }

@@ -14,5 +14,7 @@ mod replay;
 mod same;
 mod session;
 mod speed;
+mod starts;
+mod times;
 mod usb;
 mod usbip;

@@ -65,6 +65,11 @@ impl Board {
         self.trips = works;
     }
 
+    /// Pulls the break line low, or lets go of it. Without effect on a comparator that does not work.
+    pub fn pull_break(&mut self, is_low: bool) {
+        self.break_is_low = is_low;
+    }
+
     /// Lets the converter of what changes slowly run, or not.
     pub fn set_slow_converter(&mut self, converts: bool) {
         self.converts_slow = converts;

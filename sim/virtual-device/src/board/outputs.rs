@@ -2,10 +2,10 @@
 
 use super::Board;
 use crate::leg::{CurrentPath, Terminals};
+use crepitus_device::board::TRIP_A;
 use crepitus_device::drive::coil::CoilOutput;
 use crepitus_device::drive::command::Outputs;
 use crepitus_device::drive::motor::Bridge;
-use crepitus_device::drive::plausibility::TRIP_A;
 
 impl Board {
     /// The break of the coil's timer, which needs no program.
@@ -21,12 +21,18 @@ impl Board {
     /// The comparator behind the monitor's amplifier, which needs no program.
     pub(super) fn check_comparator(&mut self) {
         self.check_coil_driver();
-        if self.bridge == Bridge::Float {
+        // A line that is held low fires again, once the flag has been cleared.
+        let is_held = self.trips && self.break_is_low;
+        if self.bridge == Bridge::Float && !is_held {
             self.comparator_tripped = false;
-        } else if self.trips && self.leg.current_a(CurrentPath::Monitor).abs() > f64::from(TRIP_A) {
+        } else if is_held || self.trips && self.is_over_trip() {
             self.comparator_tripped = true;
             self.switch();
         }
+    }
+
+    fn is_over_trip(&self) -> bool {
+        self.leg.current_a(CurrentPath::Monitor).abs() > f64::from(TRIP_A)
     }
 
     pub(super) fn execute(&mut self, outputs: Outputs) {

@@ -1,6 +1,7 @@
 //! The sensors of the drive, and their faults.
 
 use crepitus_model::control::encoder::EncoderSettings;
+use crepitus_plant::effects::motor::current_path::{self, Half};
 use crepitus_plant::encoder::Encoder;
 
 /// Wiring of the encoder.
@@ -25,6 +26,16 @@ pub enum CurrentPath {
     Monitor,
 }
 
+impl CurrentPath {
+    /// Half of the bridge at which its amplifier sits.
+    pub(super) fn half(self) -> Half {
+        match self {
+            Self::Sensor => Half::A,
+            Self::Monitor => Half::B,
+        }
+    }
+}
+
 /// Reading of a shunt with its amplifier.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum CurrentSensor {
@@ -47,6 +58,24 @@ impl CurrentSensor {
             Self::Gain(gain) => current_a * gain,
             Self::StuckAt(stuck_a) => stuck_a,
         }
+    }
+}
+
+/// An amplifier over half a tick, with the faults of its shunt.
+#[derive(Clone, Debug)]
+pub struct Amplifier {
+    pub(super) path: current_path::CurrentPath,
+    pub(super) half: Half,
+    /// By what the plant's current is above that of the pulses without their ripple, A.
+    pub(super) off_a: f64,
+    pub(super) sensor: CurrentSensor,
+}
+
+impl Amplifier {
+    /// Reading `at_s` after the half tick began, A.
+    pub fn shown_a(&self, at_s: f64) -> f64 {
+        self.sensor
+            .shows(self.path.shown_a(self.half, at_s) + self.off_a)
     }
 }
 

@@ -109,11 +109,11 @@ fn some_parameters_only_change_without_torque() {
         if parameter.when == When::Always {
             continue;
         }
-        let other = if spec.default * 0.9 >= spec.min {
-            spec.default * 0.9
-        } else {
-            spec.default * 1.1
-        };
+        let others = [0.9, 1.1].map(|factor| factor * spec.default);
+        let middle = f64::midpoint(spec.min, spec.max);
+        let mut others = others.into_iter().chain([middle]);
+        let other = others.find(|other| *other != spec.default && *other >= spec.min);
+        let other = other.expect("another value");
         let id = parameter.id;
         let refused = refusal(&mut host, |values| values.set(id, other));
         assert_eq!(

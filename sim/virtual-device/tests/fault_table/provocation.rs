@@ -63,6 +63,8 @@ pub(crate) fn provocation(fault: Fault) -> Provocation {
         Fault::CommsGateStuck => vec![drive::gate_stuck(Comms)],
         Fault::DriveImageBroken
         | Fault::CommsImageBroken
+        | Fault::DriveCrystal
+        | Fault::CommsCrystal
         | Fault::DriveOptionBytes
         | Fault::CommsOptionBytes => {
             return Provocation::None(

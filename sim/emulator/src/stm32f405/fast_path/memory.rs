@@ -2,6 +2,7 @@
 
 use crate::chip::Chip;
 use crate::chip::memory::{CCM, CCM_BYTES, Memory, RAM, RAM_BYTES};
+use crate::devices::flash::Flash;
 use crate::image::{FLASH, FLASH_BYTES};
 use rsemu::core::space::RamStore;
 use rsemu::core::value::{Endian, Width};
@@ -12,6 +13,7 @@ pub(super) struct Windows {
     ram: Arc<RamStore>,
     ccm: Arc<RamStore>,
     flash: Arc<RamStore>,
+    controller: Arc<Flash>,
 }
 
 const fn width(bytes: u32) -> Width {
@@ -35,6 +37,7 @@ impl Windows {
             ram: memory.ram.clone(),
             ccm: memory.ccm.clone(),
             flash: chip.flash.array(),
+            controller: chip.flash.clone(),
         }
     }
 
@@ -58,6 +61,7 @@ impl Windows {
     pub(super) fn read(&self, address: u32, bytes: u32) -> Option<u32> {
         let in_flash = || {
             let offset = offset(address, bytes, FLASH, FLASH_BYTES as u64)?;
+            self.controller.load(offset, bytes as usize);
             Some((&*self.flash, offset))
         };
         let (memory, offset) = self.writable(address, bytes).or_else(in_flash)?;

@@ -15,7 +15,6 @@ pub(super) struct Timing<'a> {
     /// Offsets of the data that this instruction reads.
     data: [u32; MOST],
     count: usize,
-    sum: u64,
 }
 
 impl<'a> Timing<'a> {
@@ -25,7 +24,6 @@ impl<'a> Timing<'a> {
             clock,
             data: [0; MOST],
             count: 0,
-            sum: 0,
         }
     }
 
@@ -55,12 +53,6 @@ impl<'a> Timing<'a> {
         let data = self.data.iter().take(self.count).copied();
         let cycles = waits.step(self.clock + begin, fetched, data);
         self.count = 0;
-        self.sum += cycles;
         cycles
-    }
-
-    /// The waits of all.
-    pub(super) fn waits(&self) -> u64 {
-        self.sum
     }
 }

@@ -19,16 +19,19 @@
 //! turns the other way.
 //!
 //! Ud is 0.8 V, an estimate: body diodes of MOSFETs at an ampere.
+//!
+//! With a [path of the current](crate::effects::motor::current_path) that is not ideal, its owner tells the bridge
+//! where each half of a tick begins: what the winding gets is then the mean of the pulses.
 
 use crate::actuator::Actuator;
 use crate::chain::{Push, Step, Verdict, sense_of};
+use crate::effects::motor::current_path::{CurrentPath, Half};
 use crate::effects::motor::winding::{Course, Winding};
 use crate::effects::motor::{COLUMNS, MotorNumbers, NAME};
 use crate::energy_balance::{Account, EnergyBalance};
 use crepitus_model::Sense;
 
-/// Voltage over a diode that conducts, V.
-pub const DIODE_V: f64 = 0.8;
+pub use crepitus_model::control::current_path::DIODE_V;
 
 /// Share of itself below which a falling current counts as zero.
 const NEARLY: f64 = 1e-5;
@@ -54,7 +57,7 @@ enum Mode {
 }
 
 /// A motor's winding on a bridge.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Bridge {
     winding: Winding,
     supply_v: f64,
@@ -69,6 +72,11 @@ pub struct Bridge {
     charge_c: f64,
     supply_j: f64,
     diodes_j: f64,
+    /// Back-EMF in the last step, V.
+    emf_v: f64,
+    path: Option<CurrentPath>,
+    /// Mean of the pulses in this half of a tick, V.
+    pulses_v: Option<f64>,
 }
 
 impl Bridge {
@@ -84,7 +92,43 @@ impl Bridge {
             charge_c: 0.0,
             supply_j: 0.0,
             diodes_j: 0.0,
+            emf_v: 0.0,
+            path: motor.current_path(),
+            pulses_v: None,
         }
+    }
+
+    /// Begins the first or the second half of a tick, with what the bridge was set to. Only a path that is not ideal
+    /// needs it.
+    pub fn begin_half(&mut self, is_second: bool) {
+        let current_a = self.current_a();
+        let Some(path) = &mut self.path else {
+            return;
+        };
+        self.pulses_v = match self.mode {
+            Mode::Driven(volts) => {
+                let duty = volts / self.supply_v;
+                Some(path.half(is_second, duty, current_a, self.emf_v).0)
+            }
+            Mode::Diodes(_) | Mode::Blocked => {
+                path.float(current_a);
+                None
+            }
+        };
+    }
+
+    /// The current as the amplifier at a half shows it, A: the mean of the samples around the end of the half tick
+    /// that was begun last.
+    pub fn sampled_a(&self, half: Half) -> f64 {
+        match &self.path {
+            Some(path) => path.sampled_a(half) - path.even_a() + self.current_a(),
+            None => self.current_a(),
+        }
+    }
+
+    /// The path of the current in the half tick that was begun last; none if it is ideal.
+    pub fn path(&self) -> Option<&CurrentPath> {
+        self.path.as_ref()
     }
 
     /// Switches the bridge. A voltage beyond the supply's is the supply's.
@@ -92,6 +136,7 @@ impl Bridge {
         if self.line_is_open {
             return;
         }
+        self.pulses_v = None;
         self.mode = match terminals {
             Terminals::Driven(v) => Mode::Driven(v.clamp(-self.supply_v, self.supply_v)),
             Terminals::Open => Sense::of(self.current_a()).map_or(Mode::Blocked, Mode::Diodes),
@@ -153,7 +198,7 @@ impl Bridge {
     /// The voltage at terminals through which a current flows, V.
     fn voltage_v(&self) -> Option<f64> {
         match self.mode {
-            Mode::Driven(v) => Some(v),
+            Mode::Driven(v) => Some(self.pulses_v.unwrap_or(v)),
             Mode::Diodes(sense) => Some(-sense.of_signed(self.all_against_v(sense))),
             Mode::Blocked => None,
         }
@@ -215,6 +260,7 @@ impl Actuator for Bridge {
 
     fn settle(&mut self, length_s: f64, mean_rad_s: f64) {
         self.refused = false;
+        self.emf_v = self.winding.settings().constant * mean_rad_s;
         let Some(voltage_v) = self.voltage_v() else {
             self.winding.idle();
             return;
