@@ -33,8 +33,10 @@
 //!
 //! A step uses the torque's mean over its way by the first three terms about
 //! its start, the third with the velocity there: what a step gets wrong in
-//! energy is of the fourth order of its length.
+//! energy is of the fourth order of its length. Sine, cosine and exponentials are computed at an
+//! anchor, and near it the torque is a series about that.
 
+mod anchored;
 mod passive;
 
 pub use passive::Passive;
@@ -43,6 +45,7 @@ use crate::chain::{Body, Push, Step, Weight};
 use crate::effect::{Effect, Given, Part, numbers, parameters};
 use crate::energy_balance::{Account, EnergyBalance};
 use crate::load::{Load, Loaded};
+use anchored::{Anchored, Series};
 use crepitus_model::parameters::Choice;
 
 /// The effect.
@@ -79,19 +82,14 @@ pub const EFFECT: Effect = Effect {
             weight_nm: mass_kg * STANDARD_GRAVITY * 0.606 * shank_m,
             turned_rad: posture(given.choices[0]).0.to_radians(),
         };
-        let limb = Limb {
-            inertia_kg_m2: mass_kg * radius_m * radius_m,
-            damping,
-            torque: pendulum,
-            lost_j: 0.0,
-            outside: false,
-        };
+        let inertia_kg_m2 = mass_kg * radius_m * radius_m;
         match given.choices[1] {
             0 => {
                 let passive = Passive::for_hip_deg(posture(given.choices[0]).1);
-                Loaded::on(left, limb.and(passive))
+                let torque = (pendulum, passive);
+                Loaded::on(left, Limb::new(inertia_kg_m2, damping, torque))
             }
-            _ => Loaded::on(left, limb),
+            _ => Loaded::on(left, Limb::new(inertia_kg_m2, damping, pendulum)),
         }
     }),
 };
@@ -120,6 +118,8 @@ fn posture(choice: u8) -> (f64, f64) {
 trait AngleTorque: Copy + Send + 'static {
     /// Torque, N·m, its slope, N·m/rad, and its bend, N·m/rad².
     fn expand(&self, angle_rad: f64) -> [f64; 3];
+    /// The torque's series about an angle within its range.
+    fn series(&self, angle_rad: f64) -> Series;
     /// The energy that it stores, J.
     fn energy(&self, angle_rad: f64, balance: &mut EnergyBalance);
     /// The angles that it is known for, rad.
@@ -141,6 +141,15 @@ impl AngleTorque for Pendulum {
         [torque, slope, -torque]
     }
 
+    fn series(&self, angle_rad: f64) -> Series {
+        let (sin, cos) = (angle_rad + self.turned_rad).sin_cos();
+        let mut share = self.weight_nm;
+        std::array::from_fn(|k| {
+            let derivative = [cos, -sin, -cos, sin][k % 4];
+            anchored::term(k, &mut share, 1.0) * derivative
+        })
+    }
+
     fn energy(&self, angle_rad: f64, balance: &mut EnergyBalance) {
         let height_j = -self.weight_nm * (angle_rad + self.turned_rad).sin();
         balance.add(NAME, "weight", Account::Stored, height_j);
@@ -158,6 +167,11 @@ impl<A: AngleTorque, B: AngleTorque> AngleTorque for (A, B) {
         [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
     }
 
+    fn series(&self, angle_rad: f64) -> Series {
+        let (a, b) = (self.0.series(angle_rad), self.1.series(angle_rad));
+        std::array::from_fn(|k| a[k] + b[k])
+    }
+
     fn energy(&self, angle_rad: f64, balance: &mut EnergyBalance) {
         self.0.energy(angle_rad, balance);
         self.1.energy(angle_rad, balance);
@@ -173,21 +187,20 @@ impl<A: AngleTorque, B: AngleTorque> AngleTorque for (A, B) {
 struct Limb<T> {
     inertia_kg_m2: f64,
     damping: f64,
-    torque: T,
+    torque: Anchored<T>,
     lost_j: f64,
     /// The knee has left the range of the published data.
     outside: bool,
 }
 
-impl<T> Limb<T> {
-    /// Returns the limb with a further torque.
-    fn and<U>(self, torque: U) -> Limb<(T, U)> {
-        Limb {
-            inertia_kg_m2: self.inertia_kg_m2,
-            damping: self.damping,
-            torque: (self.torque, torque),
-            lost_j: self.lost_j,
-            outside: self.outside,
+impl<T: AngleTorque> Limb<T> {
+    fn new(inertia_kg_m2: f64, damping: f64, torque: T) -> Self {
+        Self {
+            inertia_kg_m2,
+            damping,
+            torque: Anchored::new(torque),
+            lost_j: 0.0,
+            outside: false,
         }
     }
 }
@@ -217,12 +230,12 @@ impl<T: AngleTorque> Load for Limb<T> {
     }
 
     fn weight(&self) -> Option<Weight> {
-        let torque = self.torque;
+        let torque = Anchored::new(*self.torque.of());
         Some(Box::new(move |angle| torque.expand(angle)[0]))
     }
 
     fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
-        self.torque.energy(body.angle_rad, balance);
+        self.torque.of().energy(body.angle_rad, balance);
         balance.add(NAME, "damping", Account::Lost, self.lost_j);
     }
 

@@ -1,5 +1,6 @@
 //! The passive moment of muscles and ligaments, after Riener and Edrich.
 
+use super::anchored::{self, Series};
 use super::{AngleTorque, NAME};
 use crate::energy_balance::{Account, EnergyBalance};
 
@@ -71,6 +72,18 @@ impl AngleTorque for Passive {
                 0.0
             },
         ]
+    }
+
+    fn series(&self, angle_rad: f64) -> Series {
+        let mut series = [0.0; anchored::TERMS];
+        series[0] = Self::CONSTANT_NM;
+        for (at_zero, growth) in self.terms {
+            let mut share = at_zero * (growth * angle_rad.to_degrees()).exp();
+            for (k, sum) in series.iter_mut().enumerate() {
+                *sum += anchored::term(k, &mut share, growth.to_degrees());
+            }
+        }
+        series
     }
 
     fn energy(&self, angle_rad: f64, balance: &mut EnergyBalance) {
