@@ -79,7 +79,7 @@ fn a_study_becomes_three_files() {
     assert_eq!(
         header.join(","),
         "change,effect,along,states,added_states,ns_per_step,time_spread,added_ns_per_step,\
-         added_ns_resolution,added_rms_nm,added_peak_nm,rms_nm,peak_nm,rms_10_50_hz_nm,rms_50_250_hz_nm,rms_250_450_hz_nm,events,\
+         added_ns_resolution,instructions_per_step,added_instructions_per_step,added_rms_nm,added_peak_nm,rms_nm,peak_nm,rms_10_50_hz_nm,rms_50_250_hz_nm,rms_250_450_hz_nm,events,\
          added_events,failure"
     );
     assert_eq!(rows.len(), 1 + EFFECTS.len());

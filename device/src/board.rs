@@ -94,7 +94,7 @@ pub struct TimerUse {
     pub base: u32,
     /// Use.
     pub does: &'static str,
-    /// How it is started.
+    /// Its start.
     pub starts: &'static str,
 }
 

@@ -6,6 +6,7 @@
 //!                        oscillator (the free object) ────┘
 //! ```
 
+mod coast;
 pub mod coefficients;
 pub mod compensated;
 mod divisor;
@@ -15,9 +16,11 @@ mod parameters;
 mod phase;
 mod settings;
 pub mod shaft;
+mod slip_lane;
 mod stick_slip;
 pub mod ticks;
 
+pub use coast::Coast;
 pub(crate) use coefficients::Given;
 pub use coefficients::StepCoefficients;
 pub use event::{EVENTS_PER_STEP, Event};
@@ -28,4 +31,5 @@ pub use settings::{
     Validated,
 };
 pub use shaft::ShaftStep;
+pub use slip_lane::SlipLane;
 pub use stick_slip::StickSlip;

@@ -11,6 +11,7 @@ pub(crate) mod counted;
 mod double;
 pub mod single;
 mod square_root;
+mod straight;
 
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -120,6 +121,12 @@ pub trait Real:
     fn exp(self) -> Self;
     /// (sin x, cos x), x in rad.
     fn sin_cos(self) -> (Self, Self);
+    /// (sin x, cos x) without a branch, so that a loop takes several at once, and whether they have the
+    /// bits of [`sin_cos`](Self::sin_cos).
+    fn straight_sin_cos(self) -> (Self, Self, bool) {
+        let (sin, cos) = self.sin_cos();
+        (sin, cos, true)
+    }
     /// The angle of the point (x, y) with y = `self`, in (−π, π].
     fn atan2(self, x: Self) -> Self;
     /// Neither infinite nor NaN.

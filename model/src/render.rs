@@ -268,7 +268,11 @@ impl<F: Real, I: Check<F>, S: Symptom<F>, E: Addition<F>, L: Limits<F>> Pipeline
 pub struct Bare<J>(pub J);
 
 impl<F: Real, J: StickSlip<F>> Symptom<F> for Bare<J> {
-    #[inline]
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call of the loop, whose arguments and results would pass through memory"
+    )]
     fn tick(
         &mut self,
         input: &Checked<F>,

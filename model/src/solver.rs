@@ -111,7 +111,7 @@ pub trait JointVisitor<F: Real> {
     type Output;
 
     /// Called with the joint.
-    fn visit<J: StickSlip<F>>(self, joint: J) -> Self::Output;
+    fn visit<J: StickSlip<F> + Clone>(self, joint: J) -> Self::Output;
 }
 
 /// Builds the joint that `settings` and `solver` describe, in stick at θ = 0

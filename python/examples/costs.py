@@ -28,6 +28,7 @@ def best_s(work: Callable[[], object], repeats: int = 5) -> float:
 def main() -> None:
     scene = crepitus.Scene("slow-examination")
     joint = crepitus.Joint("coarse", omega_rad_s=1.0)
+    joints = crepitus.Joints("coarse", 100, omega_rad_s=1.0)
     turns, speeds = np.full(STEPS, STEP_S), np.full(STEPS, 1.0)
 
     def everything() -> None:
@@ -57,6 +58,10 @@ def main() -> None:
         ("`everything` for 10 s, without a trace", best_s(everything)),
         (f"{STEPS:,} calls of `Joint.step`", best_s(in_a_loop)),
         (f"`Joint.steps` of {STEPS:,}", best_s(lambda: joint.steps(turns, speeds))),
+        (
+            f"`Joints.steps` of 100 × {STEPS // 100:,}",
+            best_s(lambda: joints.steps(turns[: STEPS // 100], speeds[: STEPS // 100])),
+        ),
         ("opening `sim`, and 2 s of its samples", best_s(sampled)),
         ("8 runs without a trace, one by one", best_s(one_by_one)),
         ("8 runs without a trace, in 2 threads", best_s(in_threads)),

@@ -22,7 +22,7 @@
 //! | runs, the arrays of a trace | `run.rs`, `columns.rs` |
 //! | studies | `studies.rs` |
 //! | many runs of a scene | `sweep.rs` |
-//! | a joint to step by hand | `joint.rs` |
+//! | a joint to step by hand, many of them | `joint.rs`, `joints.rs`, `rung.rs` |
 //! | devices, what they are given | `device.rs`, `knee.rs` |
 //! | samples, recordings, examinations | `following.rs`, `received.rs`, `samples.rs`, `examination.rs` |
 
@@ -35,9 +35,11 @@ mod errors;
 mod examination;
 mod following;
 mod joint;
+mod joints;
 mod knee;
 mod received;
 mod run;
+mod rung;
 mod samples;
 mod scene;
 mod shipped;
@@ -53,6 +55,7 @@ fn _crepitus(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<scene::Scene>()?;
     module.add_class::<joint::Joint>()?;
+    module.add_class::<joints::Joints>()?;
     module.add_class::<device::Device>()?;
     module.add_function(wrap_pyfunction!(run::simulate, module)?)?;
     module.add_function(wrap_pyfunction!(studies::accuracy, module)?)?;

@@ -21,6 +21,7 @@ struct Collector<const ROWS: bool> {
 impl<const ROWS: bool> Observer for Collector<ROWS> {
     type Error = PyErr;
     const WANTS_ROWS: bool = ROWS;
+    const NEEDS_STEPS: bool = ROWS;
 
     fn row(&mut self, values: &[f64]) -> PyResult<()> {
         if let Some(trace) = &mut self.trace

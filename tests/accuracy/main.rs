@@ -63,7 +63,7 @@ fn a_study_becomes_three_files() {
          max_event_error_s,rms_event_error_s,max_interval_error_s,frequency_error_rel,\
          rms_held_torque_error_nm,max_held_torque_error_nm,held_floor_nm,\
          rms_tick_torque_error_nm,max_tick_torque_error_nm,behind_s,behind_j,ns_per_step,ns_per_step_q1,ns_per_step_q3,us_per_simulated_s,\
-         time_spread,cycles_per_step,worst_cycles,instructions_per_step"
+         time_spread,cycles_per_step,worst_cycles,instructions_per_step,host_instructions_per_step"
     );
     // Ten rungs in two precisions, one in f64 alone, five steps.
     assert_eq!(rows.len(), 105);
@@ -77,7 +77,20 @@ fn a_study_becomes_three_files() {
     }
     let at = |name: &str| header.iter().position(|column| column == name).unwrap();
     let [first, median, third] = ["ns_per_step_q1", "ns_per_step", "ns_per_step_q3"].map(at);
+    let counted = text.contains("Instructions are valgrind's");
+    assert_eq!(
+        text.contains("Instructions were not counted"),
+        !counted,
+        "{text}"
+    );
     for row in &rows {
+        let count = number(&row[at("host_instructions_per_step")]);
+        let is_tick = number(&row[at("step_s")]) == 5e-5;
+        assert_eq!(count.is_finite(), counted && is_tick, "{row:?}");
+        assert!(
+            count.is_nan() || (5.0..=5_000.0).contains(&count),
+            "{row:?}"
+        );
         assert_eq!(row[at("input")], "exact");
         let [first, median, third] = [first, median, third].map(|column| number(&row[column]));
         assert!(first <= median && median <= third, "{row:?}");

@@ -80,7 +80,7 @@ pub struct Connection {
     pub pull: Pull,
     /// Function of the chip, as the data sheet names it; empty of a plain pin.
     pub function: &'static str,
-    /// What it is for.
+    /// Its purpose.
     pub part: &'static str,
     /// The other end of its wire.
     pub to: &'static str,

@@ -9,6 +9,7 @@ use crate::results::{self, REPORT, report_files};
 use crate::screen::{All, screen};
 use crepitus_files::json_path;
 use crepitus_files::output::{Claim, Folder};
+use crepitus_scene::instructions;
 use crepitus_studies::{Cancelled, Outcome, StudyError, Watcher};
 use serde_json::json;
 use std::path::Path;
@@ -30,6 +31,23 @@ impl Watcher for Watch {
             return Err(Cancelled);
         }
         Ok(())
+    }
+}
+
+/// Instructions of a step of so many scenes, which this program runs again with the same arguments,
+/// for so many steps; `None` without valgrind.
+pub(crate) fn counted(scenes_and_steps: (usize, u32)) -> Option<Vec<f64>> {
+    if !instructions::can_count() {
+        return None;
+    }
+    let program = std::env::current_exe().ok()?;
+    let arguments = std::env::args_os().skip(1);
+    match instructions::per_step(&program, arguments, scenes_and_steps) {
+        Ok(counts) => Some(counts),
+        Err(error) => {
+            warn(format!("instructions were not counted: {error}"));
+            None
+        }
     }
 }
 

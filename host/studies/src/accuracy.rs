@@ -16,6 +16,7 @@
 //! | the torque to compare with, at the ends of steps and within them | [`reference_torque`], [`held_torque`] |
 //! | accuracy and time of a run | [`measure`], [`timing`] |
 //! | cost of a step on the device's core | [`target`] |
+//! | instructions of a step on the host | [`price`] |
 //! | the other symptoms: errors, and cost over a step of crepitus | [`symptoms`] |
 //! | orders of convergence, and on motions of other kinds | [`orders`], [`convergence`] |
 //! | limits, and the cheapest rung within them | [`need`], [`mod@answer`] |
@@ -32,6 +33,7 @@ pub mod need;
 pub mod orders;
 pub mod point;
 pub mod points_table;
+pub mod price;
 pub mod reference_torque;
 pub mod report;
 pub mod results;

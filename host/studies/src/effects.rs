@@ -22,6 +22,7 @@
 //! | RMS, peak, bands, differences | [`influence`] |
 //! | the whole study, its results, their file | [`study`], [`results`], [`effects_table`] |
 //! | limits, and the smallest set of effects within | [`tolerance`], `smallest`, [`mod@answer`] |
+//! | costs in instructions | [`price`] |
 //! | the time window that the report shows | `window` |
 //! | what is printed, and the page's text | `words` |
 //! | runs on all cores | `crate::parallel` |
@@ -31,6 +32,7 @@ pub mod build_up;
 pub mod effects_table;
 mod hand;
 pub mod influence;
+pub mod price;
 pub mod refusal;
 pub mod report;
 pub mod results;

@@ -107,6 +107,40 @@ impl<F: Real> Oscillator<F> {
         }
     }
 
+    /// Returns whether [`Self::transition`] takes its series for this time.
+    #[inline]
+    pub(crate) fn is_short(&self, time_s: F) -> bool {
+        self.discriminant * time_s * time_s <= F::from_f64(SERIES_ANGLE_SQUARED)
+    }
+
+    fn is_undamped(&self) -> bool {
+        self.decay == F::ZERO && self.discriminant > F::ZERO
+    }
+
+    /// The motion over `time_s` ≥ 0 without a branch, if [short](Self::is_short) is told rightly, and
+    /// whether it has the bits of [`Self::transition`].
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the target features of its caller")]
+    pub(crate) fn straight_transition<const SHORT: bool>(
+        &self,
+        time_s: F,
+    ) -> (Transition<F>, bool) {
+        let (c_less_one, s, is_plain) = if SHORT {
+            let z = self.discriminant * time_s * time_s;
+            (cosine_of_root_less_one(z), time_s * sine_over_root(z), true)
+        } else {
+            let (sin, cos, is_plain) = (self.root * time_s).straight_sin_cos();
+            (cos - F::ONE, sin / self.root, is_plain)
+        };
+        let transition = Transition {
+            xx: c_less_one + self.decay * s,
+            xv: s,
+            vx: -(self.omega_n_squared * s),
+            vv: c_less_one - self.decay * s,
+        };
+        (transition, self.is_undamped() & is_plain)
+    }
+
     /// (x, v) after `time_s` ≥ 0: as [`Self::transition`] says, quicker where
     /// there is no damping and the time is short.
     #[inline]
@@ -147,6 +181,11 @@ impl<F: Real> Oscillator<F> {
     #[inline]
     pub fn jerk_bound(&self, x: F, v: F) -> F {
         self.jerk_factor * self.speed_bound(x, v)
+    }
+
+    /// Factors of |x| and of the [speed bound](Self::speed_bound) in the [jerk bound](Self::jerk_bound).
+    pub(crate) fn bound_factors(&self) -> [F; 2] {
+        [self.omega_n, self.jerk_factor]
     }
 
     /// A bound of |v⃛| that holds for the whole free motion from (x, v) on,
@@ -195,6 +234,17 @@ impl<F: Real> Oscillator<F> {
 }
 
 impl<F: Real> Transition<F> {
+    /// The change of x by x and by v, and that of v.
+    pub(crate) fn factors(&self) -> [F; 4] {
+        [self.xx, self.xv, self.vx, self.vv]
+    }
+
+    /// The motion with these [factors](Self::factors).
+    #[inline]
+    pub(crate) fn of([xx, xv, vx, vv]: [F; 4]) -> Self {
+        Self { xx, xv, vx, vv }
+    }
+
     /// Moves (x, v).
     #[inline]
     pub fn apply(&self, x: F, v: F) -> (F, F) {

@@ -1,5 +1,6 @@
 //! f64: the elementary functions of `libm`, the same on every target.
 
+use super::straight::straight_sin_cos;
 use super::{Real, State, There};
 
 impl Real for f64 {
@@ -64,6 +65,12 @@ impl Real for f64 {
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
         libm::sincos(self)
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the target features of its caller")]
+    fn straight_sin_cos(self) -> (Self, Self, bool) {
+        straight_sin_cos(self)
     }
 
     #[inline]

@@ -37,6 +37,30 @@ pub fn sin_cos(x: f32) -> (f32, f32) {
 /// interrupt, whose loops are bounded.
 #[inline]
 pub fn sin_cos_in_range(x: f32) -> (f32, f32) {
+    let (quarter_turns, s, c) = reduced(x);
+    match quarter_turns & 3 {
+        0 => (s, c),
+        1 => (c, -s),
+        2 => (-s, -c),
+        _ => (-c, s),
+    }
+}
+
+/// [`sin_cos_in_range`] without a branch.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the target features of its caller")]
+fn straight(x: f32) -> (f32, f32) {
+    let (quarter_turns, s, c) = reduced(x);
+    let turns = quarter_turns.cast_unsigned();
+    let (sin, cos) = if turns & 1 == 0 { (s, c) } else { (c, s) };
+    let signed = |x: f32, turns: u32| f32::from_bits(x.to_bits() ^ ((turns & 2) << 30));
+    (signed(sin, turns), signed(cos, turns.wrapping_add(1)))
+}
+
+/// Quarter turns of x, and sine and cosine of the rest.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "the target features of its caller")]
+fn reduced(x: f32) -> (i32, f32, f32) {
     let quarter_turns = nearest(x * FRAC_2_PI);
     #[expect(clippy::cast_precision_loss, reason = "exact below 2^24")]
     let k = quarter_turns as f32;
@@ -57,12 +81,7 @@ pub fn sin_cos_in_range(x: f32) -> (f32, f32) {
             -1.0 / 3_628_800.0,
         ],
     );
-    match quarter_turns & 3 {
-        0 => (s, c),
-        1 => (c, -s),
-        2 => (-s, -c),
-        _ => (-c, s),
-    }
+    (quarter_turns, s, c)
 }
 
 /// eˣ within 2e-7 relative; 0 below −87, infinite above 88.
@@ -234,6 +253,13 @@ impl Real for f32 {
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
         sin_cos(self)
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the target features of its caller")]
+    fn straight_sin_cos(self) -> (Self, Self, bool) {
+        let (sin, cos) = straight(self);
+        (sin, cos, Real::abs(self) <= 6000.0)
     }
 
     #[inline]

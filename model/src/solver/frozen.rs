@@ -13,7 +13,9 @@ use core::marker::PhantomData;
 use crate::joint::compensated::Compensated;
 use crate::joint::shaft::{Linear, ShaftPath, ShaftStep};
 use crate::joint::ticks::Ticks;
-use crate::joint::{EVENTS_PER_STEP, Event, EventKind, Phase, Sense, StepCoefficients, StickSlip};
+use crate::joint::{
+    Coast, EVENTS_PER_STEP, Event, EventKind, Phase, Sense, StepCoefficients, StickSlip,
+};
 use crate::real::Real;
 use crate::solver::locate::{Locate, StickPath, first_break};
 
@@ -419,6 +421,41 @@ impl<F: Real, L: Locate<F, Shape = Linear>> StickSlip<F> for Frozen<F, L> {
             State::Stick { .. } => self.omega_rad_s,
             State::Slip(slip) => slip.motion(&self.coefficients, self.since_anchor(*slip)).1,
         }
+    }
+
+    #[inline]
+    fn motion(&self) -> (F, F) {
+        match &self.state {
+            State::Stick { theta } => (theta.value(), self.omega_rad_s),
+            State::Slip(slip) => {
+                let (x, v) = slip.motion(&self.coefficients, self.since_anchor(*slip));
+                let middle = slip.sense.of_signed(self.coefficients.kinetic_angle_rad);
+                (x + middle, v)
+            }
+        }
+    }
+
+    #[inline]
+    fn coast(&self) -> Option<Coast<F>> {
+        match &self.state {
+            State::Slip(slip) if self.ticks_left > 0 && !slip.is_open => {
+                let since = self.since_anchor(*slip);
+                Coast::new(
+                    &self.coefficients,
+                    self.ticks_left,
+                    since,
+                    (slip.x, slip.v),
+                    slip.sense,
+                )
+            }
+            _ => None,
+        }
+    }
+
+    #[inline]
+    fn skip(&mut self, steps: u32, omega_rad_s: F) {
+        self.ticks_left = self.ticks_left.saturating_sub(steps.into());
+        self.omega_rad_s = omega_rad_s;
     }
 }
 

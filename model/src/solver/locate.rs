@@ -114,9 +114,13 @@ impl<F: Real, P: Propagate<F>, V: VelocityShape<F>> SlipPath<'_, F, P, V> {
 }
 
 /// Finds the end of a phase.
-pub trait Locate<F: Real>: Send + 'static {
+pub trait Locate<F: Real>: Copy + Send + 'static {
     /// The path that the shaft is taken to follow within the step.
     type Shape: VelocityShape<F>;
+
+    /// True if no match is looked for in a step at whose ends the shaft leads by more than the lead can dip:
+    /// see [`SlipLane::stepped`](crate::joint::SlipLane::stepped).
+    const LEAVES_OUT_CHORDS: bool = false;
 
     /// The first time in [0, `length_s`] at which s·T reaches `limit_nm`
     /// outwards; 0 if it is beyond the limit from the start.
@@ -249,6 +253,7 @@ mod tests {
         })
     }
 
+    #[derive(Clone, Copy)]
     struct NoMotion;
     impl Propagate<f64> for NoMotion {
         fn new(_: &crate::StepCoefficients<f64>) -> Self {

@@ -10,13 +10,15 @@ use core::marker::PhantomData;
 
 use crate::joint::compensated::Compensated;
 use crate::joint::shaft::{ShaftPath, ShaftStep, VelocityShape};
-use crate::joint::{EVENTS_PER_STEP, Event, EventKind, Phase, Sense, StepCoefficients, StickSlip};
+use crate::joint::{
+    EVENTS_PER_STEP, Event, EventKind, Phase, Sense, SlipLane, StepCoefficients, StickSlip,
+};
 use crate::real::Real;
 use crate::solver::locate::{Locate, SlipPath, StickPath, earlier, first_break};
 use crate::solver::propagate::Propagate;
 
 /// Terms of a stick's torque besides the spring's.
-pub trait StickTorque<F: Real>: Send + 'static {
+pub trait StickTorque<F: Real>: Copy + Send + 'static {
     /// The part that comes from the object's own motion, N·m.
     fn inertial(coefficients: &StepCoefficients<F>, omega: F, omega_dot: F) -> F;
 }
@@ -338,6 +340,8 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> VelocityMatch<F,
 impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
     for VelocityMatch<F, C, P, L>
 {
+    const HAS_LANES: bool = L::LEAVES_OUT_CHORDS && P::IS_LINEAR;
+
     #[inline]
     fn step(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
         let step_s = self.coefficients.step_s;
@@ -469,5 +473,24 @@ impl<F: Real, C: StickTorque<F>, P: Propagate<F>, L: Locate<F>> StickSlip<F>
             State::Stick { .. } => self.omega_rad_s,
             State::Slip { v, .. } => v,
         }
+    }
+
+    #[inline]
+    fn slip_lane(&self) -> Option<SlipLane<F>> {
+        let (State::Slip { sense, x, v }, Some(step)) = (self.state, self.propagator.whole_step())
+        else {
+            return None;
+        };
+        let a = &self.coefficients;
+        let middle_rad = a.kinetic_angle_rad;
+        Self::HAS_LANES.then(|| SlipLane::new(sense, (x, v), step, &a.oscillator, middle_rad))
+    }
+
+    #[inline]
+    fn set_slip(&mut self, to_x: F, to_v: F, omega_rad_s: F) {
+        if let State::Slip { x, v, .. } = &mut self.state {
+            (*x, *v) = (to_x, to_v);
+        }
+        self.omega_rad_s = omega_rad_s;
     }
 }

@@ -147,7 +147,7 @@ fn requests() -> Vec<Example> {
         base: Revision(300),
         values: values(),
     };
-    let asks = [
+    let asks = vec![
         Operation::Renew,
         Operation::Status,
         Operation::Counters,

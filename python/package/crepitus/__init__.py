@@ -14,7 +14,7 @@ the solver without a step       :func:`reference`
 many runs of a scene            :func:`run_many`, :func:`sweep`
 what accuracy costs             :func:`accuracy`
 what each effect does           :func:`effects`
-a joint in a loop of your own   :class:`Joint`
+a joint in a loop of your own   :class:`Joint`, many of them :class:`Joints`
 a device, real or simulated     :class:`Device`, :func:`parameters`
 recordings                      :func:`read_recording`, :class:`Recording`
 measures of an examination      :func:`examination`
@@ -30,6 +30,7 @@ from ._crepitus import Scene, __version__
 from ._device import Device, Info, Recording, Stream, examination, parameters, read_recording
 from ._errors import CrepitusError, DeviceError, RunError, SceneError
 from ._joint import Joint
+from ._joints import Joints
 from ._run import Run, reference, run
 from ._shipped import presets, scenes
 from ._studies import accuracy, effects
@@ -41,6 +42,7 @@ __all__ = [
     "DeviceError",
     "Info",
     "Joint",
+    "Joints",
     "Recording",
     "Run",
     "RunError",

@@ -9,6 +9,7 @@ import numpy.typing as npt
 __all__ = [
     "Device",
     "Joint",
+    "Joints",
     "Scene",
     "__version__",
     "accuracy",
@@ -109,6 +110,7 @@ class Joint:
         self, dphi_rad: npt.NDArray[np.float64], omega_rad_s: npt.NDArray[np.float64]
     ) -> _Columns: ...
     def restart(self, torque_nm: float = 0.0, omega_rad_s: float = 0.0) -> None: ...
+    def copy(self) -> Joint: ...
     @property
     def torque_nm(self) -> float: ...
     @property
@@ -119,6 +121,42 @@ class Joint:
     def theta_dot_rad_s(self) -> float: ...
     @property
     def events(self) -> tuple[int, int, int]: ...
+
+@final
+class Joints:
+    def __new__(
+        cls,
+        scene: Scene,
+        omega_rad_s: npt.NDArray[np.float64],
+        parameters: list[tuple[str, npt.NDArray[np.float64]]],
+    ) -> Joints: ...
+    def __len__(self) -> int: ...
+    def step(
+        self,
+        dphi_rad: npt.NDArray[np.float64],
+        omega_rad_s: npt.NDArray[np.float64],
+        of_each: bool,
+    ) -> npt.NDArray[np.float64]: ...
+    def steps(
+        self,
+        dphi_rad: npt.NDArray[np.float64],
+        omega_rad_s: npt.NDArray[np.float64],
+        of_each: bool,
+        motion: bool,
+        threads: int,
+    ) -> _Columns: ...
+    def restart(self, joint: int, torque_nm: float, omega_rad_s: float) -> None: ...
+    def copy(self) -> Joints: ...
+    @property
+    def torque_nm(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def phase(self) -> npt.NDArray[np.int8]: ...
+    @property
+    def theta_rad(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def theta_dot_rad_s(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def events(self) -> list[npt.NDArray[np.uint64]]: ...
 
 @final
 class Device:

@@ -25,7 +25,8 @@ class Joint:
     >>> joint.steps(np.full(1000, 5e-5), np.full(1000, 1.0))["torque_nm"].max()
     0.4
 
-    A call costs microseconds, a step nanoseconds: use :meth:`steps` where the motion is known.
+    A call costs a tenth of a microsecond, a step in an array a tenth of that: use :meth:`steps` where the
+    motion is known, and :class:`Joints` for many.
     """
 
     def __init__(
@@ -54,29 +55,8 @@ class Joint:
         Raises:
             SceneError: A parameter is unknown or out of its range.
         """
-        if isinstance(joint, str):
-            effect: dict[str, Any] = {"preset": joint}
-        elif isinstance(joint, Mapping):
-            effect = dict(joint)
-        else:
-            raise TypeError(
-                f"joint: expected the name of a preset or a dict, got {type(joint).__name__}"
-            )
-        if convention is not None:
-            effect["convention"] = convention
-        if restart is not None:
-            effect["restart"] = restart
         #: Joint, solver and step as a scene: its parameters are in ``scene.toml``.
-        self.scene = Scene(
-            {
-                "version": 1,
-                "title": "A joint",
-                "duration_s": 1.0,
-                "motion": {"kind": "constant", "velocity_rad_s": 0.0},
-                "solver": {"kind": solver, "step_s": step_s, "precision": precision},
-                "effects": {"crepitus": effect},
-            }
-        )
+        self.scene = scene_of(effect_of(joint, convention, restart), solver, step_s, precision)
         self.step_s = float(step_s)
         self._joint = _crepitus.Joint(self.scene, float(omega_rad_s))
         # One call less, for a loop that steps by hand.
@@ -111,6 +91,16 @@ class Joint:
         """Puts the object in stick where the shaft is, showing ``torque_nm`` (at most ±Ts)."""
         self._joint.restart(torque_nm, omega_rad_s)
 
+    def copy(self) -> Joint:
+        """A joint with the same state, which goes on by itself."""
+        other = object.__new__(Joint)
+        other.scene, other.step_s = self.scene, self.step_s
+        other._joint = self._joint.copy()
+        other.step = other._joint.step
+        return other
+
+    __copy__ = copy
+
     @property
     def torque_nm(self) -> float:
         """The torque, N·m."""
@@ -139,6 +129,39 @@ class Joint:
 
     def __repr__(self) -> str:
         return f"<Joint {self.scene.solver} at {self.step_s} s, {self.torque_nm} N·m>"
+
+
+def effect_of(
+    joint: str | Mapping[str, Any], convention: str | None, restart: str | None
+) -> dict[str, Any]:
+    """Returns the keys of ``[effects.crepitus]``."""
+    if isinstance(joint, str):
+        effect: dict[str, Any] = {"preset": joint}
+    elif isinstance(joint, Mapping):
+        effect = dict(joint)
+    else:
+        raise TypeError(
+            f"joint: expected the name of a preset or a dict, got {type(joint).__name__}"
+        )
+    if convention is not None:
+        effect["convention"] = convention
+    if restart is not None:
+        effect["restart"] = restart
+    return effect
+
+
+def scene_of(effect: dict[str, Any], solver: str, step_s: float, precision: str) -> Scene:
+    """Returns a scene of a joint alone."""
+    return Scene(
+        {
+            "version": 1,
+            "title": "A joint",
+            "duration_s": 1.0,
+            "motion": {"kind": "constant", "velocity_rad_s": 0.0},
+            "solver": {"kind": solver, "step_s": step_s, "precision": precision},
+            "effects": {"crepitus": effect},
+        }
+    )
 
 
 def _vector(numbers: Numbers) -> npt.NDArray[np.float64]:

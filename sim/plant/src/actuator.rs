@@ -96,12 +96,14 @@ pub struct Ideal {
 }
 
 impl Commanded for Ideal {
+    #[inline]
     fn command(&mut self, torque_nm: f64) {
         self.torque_nm = torque_nm;
     }
 }
 
 impl Actuator for Ideal {
+    #[inline]
     fn fold(&mut self, _: f64) -> Push {
         Push {
             torque_nm: -self.torque_nm,
@@ -110,10 +112,12 @@ impl Actuator for Ideal {
         }
     }
 
+    #[inline]
     fn load_nm(&self) -> f64 {
         self.torque_nm
     }
 
+    #[inline]
     fn settle(&mut self, length_s: f64, mean_rad_s: f64) {
         self.absorbed_j += self.torque_nm * length_s * mean_rad_s;
     }

@@ -92,6 +92,62 @@ pub trait Boundary: Send {
     fn write(&self, _: &mut Vec<f64>) {}
 }
 
+impl Boundary for Box<dyn Boundary> {
+    fn jump(&mut self, omega_rad_s: f64, body: &mut Body, chain: &mut dyn Chain) {
+        self.as_mut().jump(omega_rad_s, body, chain);
+    }
+
+    #[inline]
+    fn begin(&mut self, motion: &MotionStep) {
+        self.as_mut().begin(motion);
+    }
+
+    #[inline]
+    fn solve(&mut self, stretch: &Stretch, body: &Body, push: Push) -> Flow {
+        self.as_mut().solve(stretch, body, push)
+    }
+
+    #[inline]
+    fn settle(
+        &mut self,
+        stretch: &Stretch,
+        body: &mut Body,
+        next: Body,
+        flow: Flow,
+        settled: &Settled,
+        rigid_kg_m2: f64,
+    ) {
+        self.as_mut()
+            .settle(stretch, body, next, flow, settled, rigid_kg_m2);
+    }
+
+    #[inline]
+    fn felt_nms(&self) -> f64 {
+        self.as_ref().felt_nms()
+    }
+
+    #[inline]
+    fn struck_nms(&self) -> f64 {
+        self.as_ref().struck_nms()
+    }
+
+    fn inertia_kg_m2(&self) -> f64 {
+        self.as_ref().inertia_kg_m2()
+    }
+
+    fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
+        self.as_ref().energy(body, balance);
+    }
+
+    fn columns(&self) -> &'static [&'static str] {
+        self.as_ref().columns()
+    }
+
+    fn write(&self, row: &mut Vec<f64>) {
+        self.as_ref().write(row);
+    }
+}
+
 /// The right end has the prescribed motion, whatever torque that takes.
 #[derive(Clone, Copy, Debug)]
 pub struct Prescribed {
@@ -117,6 +173,7 @@ impl Prescribed {
     }
 
     /// Sets the motion's velocity for all parts that are rigid with it.
+    #[inline]
     fn carry(&mut self, body: &mut Body, omega_rad_s: f64, rigid_kg_m2: f64) {
         let impulse = rigid_kg_m2 * (omega_rad_s - body.omega_rad_s);
         self.felt_nms += impulse;
@@ -131,10 +188,12 @@ impl Boundary for Prescribed {
         self.carry(body, omega_rad_s, chain.inertia_kg_m2());
     }
 
+    #[inline]
     fn begin(&mut self, motion: &MotionStep) {
         self.motion = *motion;
     }
 
+    #[inline]
     fn solve(&mut self, stretch: &Stretch, _: &Body, push: Push) -> Flow {
         let travel = self.motion.angle_rad(stretch.to) - self.motion.angle_rad(stretch.from);
         let omega_rad_s = travel / stretch.length_s;
@@ -150,6 +209,7 @@ impl Boundary for Prescribed {
         }
     }
 
+    #[inline]
     fn settle(
         &mut self,
         stretch: &Stretch,
@@ -165,15 +225,22 @@ impl Boundary for Prescribed {
             + settled.impulse_nms * next.omega_rad_s;
         *body = next;
         if stretch.to >= 1.0 {
-            self.carry(body, self.motion.to.omega_rad_s, rigid_kg_m2);
+            if rigid_kg_m2 == 0.0 {
+                // Nothing takes an impulse.
+                body.omega_rad_s = self.motion.to.omega_rad_s;
+            } else {
+                self.carry(body, self.motion.to.omega_rad_s, rigid_kg_m2);
+            }
             body.angle_rad = self.motion.to.angle_rad;
         }
     }
 
+    #[inline]
     fn felt_nms(&self) -> f64 {
         self.felt_nms
     }
 
+    #[inline]
     fn struck_nms(&self) -> f64 {
         self.struck_nms
     }

@@ -285,6 +285,90 @@ pub trait Chain: Send {
     }
 }
 
+impl Chain for Box<dyn Chain> {
+    #[inline]
+    fn left(&self) -> Option<&dyn Chain> {
+        self.as_ref().left()
+    }
+
+    #[inline]
+    fn fold(&mut self, step: &Step, body: &Body) -> Push {
+        self.as_mut().fold(step, body)
+    }
+
+    #[inline]
+    fn shaft_mean_rad_s(&self, step: &Step, body: &Body, flow: Flow) -> f64 {
+        self.as_ref().shaft_mean_rad_s(step, body, flow)
+    }
+
+    #[inline]
+    fn check(&mut self, step: &Step, body: &Body, flow: Flow) -> Verdict {
+        self.as_mut().check(step, body, flow)
+    }
+
+    #[inline]
+    fn settle(
+        &mut self,
+        step: &Step,
+        body: &Body,
+        next: &mut Body,
+        flow: Flow,
+        ends_at: Option<f64>,
+    ) -> Settled {
+        self.as_mut().settle(step, body, next, flow, ends_at)
+    }
+
+    #[inline]
+    fn shaft(&self, body: &Body) -> Body {
+        self.as_ref().shaft(body)
+    }
+
+    fn is_rigid(&self) -> bool {
+        self.as_ref().is_rigid()
+    }
+
+    #[inline]
+    fn inertia_kg_m2(&self) -> f64 {
+        self.as_ref().inertia_kg_m2()
+    }
+
+    fn attach(&mut self, right_kg_m2: f64) {
+        self.as_mut().attach(right_kg_m2);
+    }
+
+    fn jerk(&mut self, body: &Body, change_rad_s: f64) {
+        self.as_mut().jerk(body, change_rad_s);
+    }
+
+    fn weight(&self) -> Option<Weight> {
+        self.as_ref().weight()
+    }
+
+    fn energy(&self, body: &Body, balance: &mut EnergyBalance) {
+        self.as_ref().energy(body, balance);
+    }
+
+    fn columns(&self, names: &mut Vec<&'static str>) {
+        self.as_ref().columns(names);
+    }
+
+    fn write(&self, body: &Body, row: &mut Vec<f64>) {
+        self.as_ref().write(body, row);
+    }
+
+    fn impacts(&self) -> Option<Impacts> {
+        self.as_ref().impacts()
+    }
+
+    fn coil_current_a(&self) -> Option<f64> {
+        self.as_ref().coil_current_a()
+    }
+
+    fn warnings(&self, warnings: &mut Vec<String>) {
+        self.as_ref().warnings(warnings);
+    }
+}
+
 /// The left end: the motor's shaft, on which the actuator acts.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Shaft;

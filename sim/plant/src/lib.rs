@@ -32,10 +32,12 @@ pub mod energy_balance;
 mod extremes;
 pub mod guiding_hand;
 pub mod load;
+pub mod mechanics;
 pub mod motion;
 pub mod piece;
 pub mod plant;
 pub mod recording;
+pub mod rigid_shaft;
 pub mod spectrum;
 pub mod swing;
 

@@ -168,6 +168,15 @@ impl Motion {
         self
     }
 
+    /// Returns whether the velocity is linear in time between the knots.
+    pub fn is_parabolic(&self) -> bool {
+        match self {
+            Self::Single(piece) => piece.is_parabolic(),
+            Self::Sequence(pieces) => pieces.iter().all(Piece::is_parabolic),
+            Self::Strokes(_) | Self::Cycle(_) => false,
+        }
+    }
+
     /// The piece in which `time_s` lies; a piece begins at its first instant,
     /// so at a knot this is the piece after it. It always ends after `time_s`:
     /// who goes from piece to piece comes to every time.

@@ -62,7 +62,35 @@ pub enum Curve {
     },
 }
 
+/// A piece with a linear velocity: φ = c₀ + c₁τ + c₂τ² with τ = t − start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parabola {
+    start_s: f64,
+    coefficients: [f64; 3],
+}
+
+impl Parabola {
+    /// Angle and velocity at `time_s`, rad and rad/s: those of the piece, to the bit.
+    #[inline]
+    pub fn angle_and_velocity(&self, time_s: f64) -> (f64, f64) {
+        let [c0, c1, c2] = self.coefficients;
+        let t = time_s - self.start_s;
+        ((c2 * t + c1) * t + c0, 2.0 * c2 * t + c1)
+    }
+}
+
 impl Piece {
+    /// The piece as a parabola, if it is one.
+    pub fn parabola(&self) -> Option<Parabola> {
+        match self.curve {
+            Curve::Polynomial([c0, c1, c2, ..]) if self.is_parabolic() => Some(Parabola {
+                start_s: self.start_s,
+                coefficients: [c0, c1, c2],
+            }),
+            _ => None,
+        }
+    }
+
     /// Returns whether the velocity is linear in time, so that the angle is a parabola.
     #[inline]
     pub fn is_parabolic(&self) -> bool {
@@ -87,15 +115,24 @@ impl Piece {
         self.is_parabolic() && matches!(self.curve, Curve::Polynomial([_, _, c2, ..]) if c2 == 0.0)
     }
 
+    /// A bound of |d³Ω/dt³| on the whole piece, rad/s⁴.
+    #[inline]
+    pub fn snap_bound(&self) -> f64 {
+        match self.curve {
+            Curve::Polynomial([.., c4, c5]) if (c4, c5) == (0.0, 0.0) => 0.0,
+            _ => self.bounds(self.start_s, self.end_s).omega_dddot,
+        }
+    }
+
     /// Angle and velocity at `time_s`, rad and rad/s: all that a step needs.
     #[inline]
     pub fn angle_and_velocity(&self, time_s: f64) -> (f64, f64) {
         match self.curve {
             Curve::Polynomial([c0, c1, c2, c3, c4, c5]) => {
-                let t = time_s - self.start_s;
-                if self.is_parabolic() {
-                    return ((c2 * t + c1) * t + c0, 2.0 * c2 * t + c1);
+                if let Some(parabola) = self.parabola() {
+                    return parabola.angle_and_velocity(time_s);
                 }
+                let t = time_s - self.start_s;
                 (
                     ((((c5 * t + c4) * t + c3) * t + c2) * t + c1) * t + c0,
                     (((5.0 * c5 * t + 4.0 * c4) * t + 3.0 * c3) * t + 2.0 * c2) * t + c1,
@@ -184,18 +221,45 @@ impl Piece {
 }
 
 /// (sin 2πx, cos 2πx), exact at every quarter turn however large x is.
+#[inline]
 fn sin_cos_turns(x: f64) -> (f64, f64) {
-    let r = x - x.round();
-    let quarter = (4.0 * r).round();
-    let (sin, cos) = (TAU * (r - quarter / 4.0)).sin_cos();
-    if quarter == 0.0 {
-        (sin, cos)
-    } else if quarter == 1.0 {
-        (cos, -sin)
-    } else if quarter == -1.0 {
-        (-cos, sin)
+    let r = x - rounded(x);
+    // The whole number of quarters nearest to r, which is at most half a turn.
+    let size = r.abs();
+    let quarters = if size < 0.125 {
+        0.0
+    } else if size < 0.375 {
+        0.25
     } else {
+        0.5
+    };
+    let (sin, cos) = (TAU * (r - quarters * 1.0_f64.copysign(r))).sin_cos();
+    if quarters == 0.0 {
+        (sin, cos)
+    } else if quarters == 0.5 {
         (-sin, -cos)
+    } else if r > 0.0 {
+        (cos, -sin)
+    } else {
+        (-cos, sin)
+    }
+}
+
+/// Nearest whole number, halves away from zero: `f64::round`, which is a call into the C library.
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "below 2^51, where every whole number has an i64 and an f64"
+)]
+fn rounded(x: f64) -> f64 {
+    /// The largest number below a half: with a half itself, the sum could round up.
+    const HALF: f64 = 0.5 - f64::EPSILON / 4.0;
+    const MOST: f64 = 2_251_799_813_685_248.0;
+    if x.abs() < MOST {
+        (x + HALF.copysign(x)) as i64 as f64
+    } else {
+        x.round()
     }
 }
 
@@ -261,6 +325,49 @@ mod tests {
         }
         .bounds(0.0, f64::INFINITY);
         assert_eq!((bounds.omega_dot, bounds.omega_ddot), (1.0, 0.0));
+    }
+
+    #[test]
+    fn rounding_is_that_of_the_library() {
+        let steps = (0..2_000_000).map(|n| f64::from(n) * 0.001_953_125 - 1953.0);
+        let near = [
+            0.5,
+            1.5,
+            2.5,
+            1e9 + 0.5,
+            1_073_741_824.5,
+            2_147_483_648.0,
+            1e300,
+        ];
+        let near = near
+            .iter()
+            .flat_map(|x: &f64| [x.next_down(), *x, x.next_up()]);
+        for x in steps.chain(near.flat_map(|x| [x, -x])) {
+            assert_eq!(rounded(x), x.round(), "{x:e}");
+        }
+        assert!(rounded(f64::NAN).is_nan());
+        assert_eq!(rounded(f64::INFINITY), f64::INFINITY);
+    }
+
+    /// Quarters as they were counted by rounding; the boundary of two octants is where it matters.
+    #[test]
+    fn octants_are_those_of_a_rounded_quarter() {
+        for n in -4000..=4000 {
+            let x = f64::from(n) / 1000.0;
+            let eighth = f64::from(n) / 8.0;
+            for x in [x, eighth, eighth.next_up(), eighth.next_down()] {
+                let r = x - x.round();
+                let quarter = (4.0 * r).round();
+                let (sin, cos) = (TAU * (r - quarter / 4.0)).sin_cos();
+                let expected = match quarter {
+                    0.0 => (sin, cos),
+                    1.0 => (cos, -sin),
+                    -1.0 => (-cos, sin),
+                    _ => (-sin, -cos),
+                };
+                assert_eq!(sin_cos_turns(x), expected, "{x:e}");
+            }
+        }
     }
 
     #[test]

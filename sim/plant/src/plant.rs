@@ -21,12 +21,13 @@ const LOOKS_PER_END: u32 = 8;
 /// The shortest part of a step that an end of a mode can cut off.
 const SHORTEST: f64 = 1e-6;
 
-/// A coupled plant. Its actuator is the one that a scene lists, in a box, or of
-/// a type that its owner knows and can reach.
-pub struct Plant<A = Box<dyn Commanded>> {
+/// A coupled plant. Its parts are those that a scene lists: in boxes, or of types that are
+/// known where it is [composed](crate::assembly::compose), and then a tick has nothing of
+/// the parts that there are not.
+pub struct Plant<A = Box<dyn Commanded>, C = Box<dyn Chain>, B = Box<dyn Boundary>> {
     actuator: A,
-    chain: Box<dyn Chain>,
-    boundary: Box<dyn Boundary>,
+    chain: C,
+    boundary: B,
     /// The body at the right end of the chain.
     body: Body,
     /// Bridge of the actuator on the shell.
@@ -41,9 +42,10 @@ struct Solution {
     flow: Flow,
 }
 
-impl<A: Commanded> Plant<A> {
+impl<A: Commanded, C: Chain, B: Boundary> Plant<A, C, B> {
     /// Starts a tick with the torque setpoint of the device, N·m, and the voltage that
     /// it commanded for the coil in the tick before, V.
+    #[inline]
     pub fn command(&mut self, torque_nm: f64, coil_v: f64) {
         self.actuator.command(torque_nm);
         self.coil = Coil::Driven(coil_v);
@@ -51,13 +53,24 @@ impl<A: Commanded> Plant<A> {
 }
 
 impl<A: Actuator> Plant<A> {
+    /// Releases the right end: from now on nobody holds it. What the hand was given and stored
+    /// is no longer in the balance.
+    pub fn release(&mut self) {
+        self.hold_by(|_| Box::new(Released));
+    }
+
+    /// Lets another boundary hold the right end from now on, where it is, made for this chain. The balance
+    /// starts again.
+    pub fn hold_by(&mut self, make: impl FnOnce(&dyn Chain) -> Box<dyn Boundary>) {
+        self.boundary = make(self.chain.as_ref());
+        self.chain.attach(self.boundary.inertia_kg_m2());
+        self.start = self.booked();
+    }
+}
+
+impl<A: Actuator, C: Chain, B: Boundary> Plant<A, C, B> {
     /// Couples the parts; the right end begins at `start`.
-    pub fn new(
-        actuator: A,
-        mut chain: Box<dyn Chain>,
-        boundary: Box<dyn Boundary>,
-        start: Body,
-    ) -> Self {
+    pub fn new(actuator: A, mut chain: C, boundary: B, start: Body) -> Self {
         chain.attach(boundary.inertia_kg_m2());
         let mut plant = Self {
             actuator,
@@ -81,20 +94,6 @@ impl<A: Actuator> Plant<A> {
         &mut self.actuator
     }
 
-    /// Releases the right end: from now on nobody holds it. What the hand was given and stored
-    /// is no longer in the balance.
-    pub fn release(&mut self) {
-        self.hold_by(|_| Box::new(Released));
-    }
-
-    /// Lets another boundary hold the right end from now on, where it is, made for this chain. The balance
-    /// starts again.
-    pub fn hold_by(&mut self, make: impl FnOnce(&dyn Chain) -> Box<dyn Boundary>) {
-        self.boundary = make(self.chain.as_ref());
-        self.chain.attach(self.boundary.inertia_kg_m2());
-        self.start = self.booked();
-    }
-
     /// Switches the bridge of the coil.
     pub fn set_coil(&mut self, coil: Coil) {
         self.coil = coil;
@@ -103,12 +102,30 @@ impl<A: Actuator> Plant<A> {
     /// Lets the motion's velocity jump to `omega_rad_s` between two steps.
     pub fn jump(&mut self, omega_rad_s: f64) {
         self.boundary
-            .jump(omega_rad_s, &mut self.body, self.chain.as_mut());
+            .jump(omega_rad_s, &mut self.body, &mut self.chain);
     }
 
     /// One step, in which the scene's motion goes like this.
+    #[inline]
     pub fn advance(&mut self, motion: &MotionStep) {
         self.boundary.begin(motion);
+        let whole = Stretch {
+            from: 0.0,
+            to: 1.0,
+            length_s: motion.length_s,
+        };
+        let (solution, end) = self.look(&whole);
+        if end.is_none() {
+            self.go(&whole, &solution, None);
+        } else {
+            self.advance_by_ends(motion, (solution, end));
+        }
+    }
+
+    /// A step in which a mode ends: `found` is the first look at all of it.
+    #[cold]
+    fn advance_by_ends(&mut self, motion: &MotionStep, found: (Solution, Option<f64>)) {
+        let mut found = Some(found);
         let mut from = 0.0;
         for ends in 0..=ENDS_PER_STEP {
             let stretch = |to: f64| Stretch {
@@ -116,13 +133,14 @@ impl<A: Actuator> Plant<A> {
                 to,
                 length_s: (to - from) * motion.length_s,
             };
+            let rest = stretch(1.0);
+            let found = found.take().unwrap_or_else(|| self.look(&rest));
             let (part, solution, end) = if ends < ENDS_PER_STEP {
-                self.first_end(from, stretch)
+                self.first_end(from, found, stretch)
             } else {
-                let whole = stretch(1.0);
-                (whole, self.look(&whole).0, None)
+                (rest, found.0, None)
             };
-            self.go(&part, solution, end);
+            self.go(&part, &solution, end);
             if part.to >= 1.0 {
                 return;
             }
@@ -130,17 +148,18 @@ impl<A: Actuator> Plant<A> {
         }
     }
 
-    /// The rest of a step up to the first end of a mode, if there is one.
+    /// The rest of a step up to the first end of a mode, if there is one: of what was found in a
+    /// look at all of it.
     ///
     /// Found on a stretch that goes beyond it, an end is a little elsewhere on
     /// the stretch up to it, and so may be the modes: it is looked for again.
     fn first_end(
         &mut self,
         from: f64,
+        (mut solution, mut end): (Solution, Option<f64>),
         stretch: impl Fn(f64) -> Stretch,
     ) -> (Stretch, Solution, Option<f64>) {
         let mut part = stretch(1.0);
-        let (mut solution, mut end) = self.look(&part);
         // Up to here there was none.
         let mut none = from;
         for _ in 0..LOOKS_PER_END {
@@ -172,8 +191,20 @@ impl<A: Actuator> Plant<A> {
 
     /// Brings the modes in order, solves the stretch in them, and finds the
     /// first mode that ends within.
+    #[inline]
     fn look(&mut self, stretch: &Stretch) -> (Solution, Option<f64>) {
-        for _ in 1..CHANGES_PER_FOLD {
+        let solution = self.solve(stretch);
+        match self.check(&solution) {
+            Verdict::Holds => (solution, None),
+            Verdict::EndsAt(fraction) => (solution, Some(fraction)),
+            Verdict::Again => self.look_again(stretch),
+        }
+    }
+
+    /// Looks at a stretch after a mode has changed.
+    #[cold]
+    fn look_again(&mut self, stretch: &Stretch) -> (Solution, Option<f64>) {
+        for _ in 2..CHANGES_PER_FOLD {
             let solution = self.solve(stretch);
             match self.check(&solution) {
                 Verdict::Holds => return (solution, None),
@@ -195,6 +226,7 @@ impl<A: Actuator> Plant<A> {
         own.and(self.chain.check(step, &self.body, *flow))
     }
 
+    #[inline]
     fn solve(&mut self, stretch: &Stretch) -> Solution {
         let step = Step {
             length_s: stretch.length_s,
@@ -209,35 +241,40 @@ impl<A: Actuator> Plant<A> {
     }
 
     /// Goes through a stretch.
-    fn go(&mut self, stretch: &Stretch, Solution { step, flow }: Solution, ends_at: Option<f64>) {
+    #[inline]
+    fn go(&mut self, stretch: &Stretch, Solution { step, flow }: &Solution, ends_at: Option<f64>) {
         let mut next = self.body.after(stretch.length_s, flow.omega_rad_s);
         let settled = self
             .chain
-            .settle(&step, &self.body, &mut next, flow, ends_at);
+            .settle(step, &self.body, &mut next, *flow, ends_at);
         let rigid = self.chain.inertia_kg_m2();
         self.boundary
-            .settle(stretch, &mut self.body, next, flow, &settled, rigid);
+            .settle(stretch, &mut self.body, next, *flow, &settled, rigid);
         self.actuator.settle(stretch.length_s, settled.shaft_rad_s);
     }
 
     /// The motor's shaft, referred to the joint: where the encoder sits and
     /// the torque is rendered.
+    #[inline]
     pub fn shaft(&self) -> Body {
         self.chain.shaft(&self.body)
     }
 
     /// The right end of the chain: the leg, where the hand is.
+    #[inline]
     pub fn leg(&self) -> Body {
         self.body
     }
 
     /// Impulse that the hand has felt so far, N·m·s; see
     /// [`Boundary::felt_nms`].
+    #[inline]
     pub fn felt_nms(&self) -> f64 {
         self.boundary.felt_nms()
     }
 
     /// The part of that which came in impacts, N·m·s.
+    #[inline]
     pub fn struck_nms(&self) -> f64 {
         self.boundary.struck_nms()
     }

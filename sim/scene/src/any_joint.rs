@@ -4,11 +4,21 @@
 use crepitus_model::Validated;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
-    Event, Phase, Real, Settings, SettingsError, ShaftStep, StepCoefficients, StickSlip,
+    EVENTS_PER_STEP, Event, Phase, Real, Settings, SettingsError, ShaftStep, StepCoefficients,
+    StickSlip,
 };
 
 /// A joint whose rung was chosen while the program runs.
-pub struct AnyJoint<F>(Box<dyn Erased<F> + Send>);
+pub struct AnyJoint<F> {
+    joint: Box<dyn Erased<F> + Send>,
+    /// Phase and torque, which every step is asked for: they come with it.
+    output: Output<F>,
+    /// Events of the last step: there are hardly ever any.
+    events: Vec<Event<F>>,
+}
+
+/// Phase of a joint and its torque, N·m.
+type Output<F> = (Phase, F);
 
 impl<F: Precise> AnyJoint<F> {
     /// The joint that `settings` and `solver` describe; see [`with_joint`].
@@ -67,45 +77,47 @@ impl<F: Real> JointVisitor<F> for Boxed {
     type Output = AnyJoint<F>;
 
     fn visit<J: StickSlip<F>>(self, joint: J) -> AnyJoint<F> {
-        AnyJoint(Box::new(joint))
+        AnyJoint {
+            output: output(&joint),
+            joint: Box::new(joint),
+            events: Vec::with_capacity(EVENTS_PER_STEP),
+        }
     }
 }
 
 /// [`StickSlip`] without type parameters.
 trait Erased<F: Real> {
-    fn step(&mut self, shaft: &ShaftStep<F>, on_event: &mut dyn FnMut(Event<F>));
-    fn restart(&mut self, torque_nm: F, omega_rad_s: F);
-    fn change_step(&mut self, coefficients: StepCoefficients<F>);
+    fn step(&mut self, shaft: &ShaftStep<F>, events: &mut Vec<Event<F>>) -> Output<F>;
+    fn restart(&mut self, torque_nm: F, omega_rad_s: F) -> Output<F>;
+    fn change_step(&mut self, coefficients: StepCoefficients<F>) -> Output<F>;
     fn coefficients(&self) -> &StepCoefficients<F>;
-    fn phase(&self) -> Phase;
-    fn torque_nm(&self) -> F;
     fn theta_rad(&self) -> F;
     fn theta_dot_rad_s(&self) -> F;
 }
 
+#[inline]
+fn output<F: Real, J: StickSlip<F>>(joint: &J) -> Output<F> {
+    (joint.phase(), joint.torque_nm())
+}
+
 impl<F: Real, J: StickSlip<F>> Erased<F> for J {
-    fn step(&mut self, shaft: &ShaftStep<F>, on_event: &mut dyn FnMut(Event<F>)) {
-        StickSlip::step(self, shaft, on_event);
+    fn step(&mut self, shaft: &ShaftStep<F>, events: &mut Vec<Event<F>>) -> Output<F> {
+        StickSlip::step(self, shaft, |event| events.push(event));
+        output(self)
     }
 
-    fn restart(&mut self, torque_nm: F, omega_rad_s: F) {
+    fn restart(&mut self, torque_nm: F, omega_rad_s: F) -> Output<F> {
         StickSlip::restart(self, torque_nm, omega_rad_s);
+        output(self)
     }
 
-    fn change_step(&mut self, coefficients: StepCoefficients<F>) {
+    fn change_step(&mut self, coefficients: StepCoefficients<F>) -> Output<F> {
         StickSlip::change_step(self, coefficients);
+        output(self)
     }
 
     fn coefficients(&self) -> &StepCoefficients<F> {
         StickSlip::coefficients(self)
-    }
-
-    fn phase(&self) -> Phase {
-        StickSlip::phase(self)
-    }
-
-    fn torque_nm(&self) -> F {
-        StickSlip::torque_nm(self)
     }
 
     fn theta_rad(&self) -> F {
@@ -118,35 +130,41 @@ impl<F: Real, J: StickSlip<F>> Erased<F> for J {
 }
 
 impl<F: Real> StickSlip<F> for AnyJoint<F> {
-    fn step(&mut self, shaft: &ShaftStep<F>, mut on_event: impl FnMut(Event<F>)) {
-        self.0.step(shaft, &mut on_event);
+    #[inline]
+    fn step(&mut self, shaft: &ShaftStep<F>, on_event: impl FnMut(Event<F>)) {
+        self.output = self.joint.step(shaft, &mut self.events);
+        if !self.events.is_empty() {
+            self.events.drain(..).for_each(on_event);
+        }
     }
 
     fn restart(&mut self, torque_nm: F, omega_rad_s: F) {
-        self.0.restart(torque_nm, omega_rad_s);
+        self.output = self.joint.restart(torque_nm, omega_rad_s);
     }
 
     fn change_step(&mut self, coefficients: StepCoefficients<F>) {
-        self.0.change_step(coefficients);
+        self.output = self.joint.change_step(coefficients);
     }
 
     fn coefficients(&self) -> &StepCoefficients<F> {
-        self.0.coefficients()
+        self.joint.coefficients()
     }
 
+    #[inline]
     fn phase(&self) -> Phase {
-        self.0.phase()
+        self.output.0
     }
 
+    #[inline]
     fn torque_nm(&self) -> F {
-        self.0.torque_nm()
+        self.output.1
     }
 
     fn theta_rad(&self) -> F {
-        self.0.theta_rad()
+        self.joint.theta_rad()
     }
 
     fn theta_dot_rad_s(&self) -> F {
-        self.0.theta_dot_rad_s()
+        self.joint.theta_dot_rad_s()
     }
 }

@@ -19,7 +19,7 @@
 //! | the motion step by step, for who steps a plant himself | [`walk`] |
 //! | columns, rows and events | [`trace`] |
 //! | the files of a run, written whole or not at all | [`output`] |
-//! | the clock of every cost | [`cpu_time`] |
+//! | the clock of every cost, and a count where it is too noisy | [`cpu_time`], [`instructions`] |
 //! | the event-driven solver without a step | [`mod@reference`] |
 //! | the same for the symptoms besides crepitus | [`reference::symptoms`] |
 
@@ -29,6 +29,7 @@ mod device_checks;
 mod document;
 mod effects;
 pub mod error;
+pub mod instructions;
 mod knee;
 pub mod output;
 pub mod preset;

@@ -24,6 +24,7 @@ mod first_root;
 mod follow;
 mod parabola;
 mod repeat;
+mod rising;
 mod rules;
 mod swing;
 pub mod symptoms;
@@ -63,8 +64,8 @@ pub struct Reference<'a> {
     time_s: f64,
     /// The shaft now; just after a knot, at it.
     now: ShaftState,
-    /// The shaft just before the present piece began.
-    before_piece: ShaftState,
+    /// A bound of |d³Ω/dt³| on the piece, rad/s⁴.
+    snap_bound: f64,
     state: State,
     /// State of the search for the end of this phase.
     ahead: Ahead,
@@ -117,9 +118,9 @@ impl<'a> Reference<'a> {
             frozen: (f64::NAN, f64::NAN),
             piece,
             piece_place: 0,
+            snap_bound: piece.snap_bound(),
             time_s: 0.0,
             now: piece.at(0.0),
-            before_piece: piece.at(0.0),
             state: State::Stick {
                 theta: 0.0,
                 phi: piece.at(0.0).phi_rad,
@@ -149,20 +150,20 @@ impl<'a> Reference<'a> {
             if self.turns.is_multiple_of(POLL_EVERY) {
                 follower.poll(self.time_s)?;
             }
+            if self.piece.end_s < self.unheeding_until_s().min(to_s) {
+                self.next_piece();
+                continue;
+            }
             let horizon_s = self.piece.end_s.min(to_s);
             if self.next_event(horizon_s, follower)? {
                 continue;
             }
-            self.go_to(horizon_s);
             if self.piece.end_s > to_s {
+                self.go_to(horizon_s);
                 return ControlFlow::Continue(());
             }
-            self.before_piece = self.now;
-            self.piece = self
-                .motion
-                .piece_from(self.piece.end_s, &mut self.piece_place);
+            self.next_piece();
             self.now = self.piece.at(self.time_s);
-            self.repeat = None;
             self.ahead = Ahead::from(self.time_s);
             if self.piece.jump {
                 self.jump(follower)?;
@@ -170,7 +171,36 @@ impl<'a> Reference<'a> {
         }
     }
 
+    /// The time before which nothing that the shaft does changes what happens, s: a frozen slip
+    /// lasts as long as it lasts.
+    #[inline]
+    fn unheeding_until_s(&self) -> f64 {
+        match self.state {
+            State::Slip(slip) if self.settings.convention == Convention::Frozen => slip.end_s,
+            _ => f64::NEG_INFINITY,
+        }
+    }
+
+    /// Goes on to the next piece; the shaft is not computed there.
+    fn next_piece(&mut self) {
+        self.time_s = self.piece.end_s;
+        self.piece = self.motion.piece_from(self.time_s, &mut self.piece_place);
+        self.snap_bound = self.piece.snap_bound();
+        self.repeat = None;
+    }
+
+    /// The shaft just before the present piece began.
+    fn before_piece(&self) -> ShaftState {
+        let start_s = self.piece.start_s;
+        if start_s > 0.0 {
+            self.motion.piece(start_s.next_down()).at(start_s)
+        } else {
+            self.piece.at(start_s)
+        }
+    }
+
     /// The shaft now; just after it, at a knot.
+    #[inline]
     pub fn shaft(&self) -> ShaftState {
         self.now
     }
@@ -227,6 +257,18 @@ impl<'a> Reference<'a> {
         if self.repeat.is_some() {
             return self.next_of_cycle(horizon_s, follower);
         }
+        if let State::Slip(slip) = &self.state
+            && self.settings.convention == Convention::Frozen
+        {
+            // Known since it began.
+            let (end_s, sense) = (slip.end_s, slip.sense);
+            if end_s > horizon_s {
+                return ControlFlow::Continue(false);
+            }
+            self.go_to(end_s);
+            self.end_slip(sense, follower)?;
+            return ControlFlow::Continue(true);
+        }
         let now_s = self.time_s;
         let found = self.look_ahead(horizon_s, &mut || follower.poll(now_s))?;
         let Some(end) = found else {
@@ -235,19 +277,20 @@ impl<'a> Reference<'a> {
         self.go_to(end.time_s);
         match self.state {
             State::Stick { theta, phi } => {
-                let shaft = self.now;
-                let torque = self.stick_torque(theta, phi, &shaft);
+                let shaft = &self.now;
+                let torque = self.stick_torque(theta, phi, shaft);
                 // A kink of the velocity may break it by a jump of the torque.
                 let before = if self.time_s > self.piece.start_s {
                     torque
                 } else {
-                    self.stick_torque(theta, phi, &self.before_piece)
+                    self.stick_torque(theta, phi, &self.before_piece())
                 };
                 let theta =
-                    self.break_angle(end.sense, torque, &shaft, theta + (shaft.phi_rad - phi));
-                self.begin_slip(end.sense, (theta, shaft.omega_rad_s), before, follower)?;
+                    self.break_angle(end.sense, torque, shaft, theta + (shaft.phi_rad - phi));
+                let omega_rad_s = shaft.omega_rad_s;
+                self.begin_slip(end.sense, (theta, omega_rad_s), before, follower)?;
             }
-            State::Slip(slip) => self.end_slip(&slip, follower)?,
+            State::Slip(Slip { sense, .. }) => self.end_slip(sense, follower)?,
         }
         ControlFlow::Continue(true)
     }

@@ -5,6 +5,8 @@
 //! out. What is observed on the way goes to an [`Observer`]; nothing of a run
 //! is kept in memory but its totals.
 
+mod any_device;
+mod command;
 mod coupled;
 mod device;
 mod energy;
@@ -12,12 +14,16 @@ mod event_driven;
 mod held_back;
 mod lead;
 mod probe;
+mod reached;
+mod recorder;
 mod sensor;
 mod stages;
 mod stepping;
 mod summary;
 mod tally;
+mod untraced;
 mod watch;
+mod watching;
 
 pub use coupled::{FELT_COLUMN, STRUCK_COLUMN};
 pub use held_back::HELD_BACK_COLUMN;
@@ -29,6 +35,7 @@ pub use summary::{
     TorqueSummary,
 };
 pub use tally::TorqueTally;
+pub use untraced::is_stepless;
 
 use crate::any_joint::Precise;
 use crate::scene::{Precision, Scene, SolverChoice};
@@ -46,6 +53,11 @@ pub trait Observer {
 
     /// Whether rows of the trace are needed.
     const WANTS_ROWS: bool = true;
+
+    /// Whether the run is to make every step of its solver, as for who times or judges them. One that
+    /// wants no rows may go without: then a run goes from event to event where that gives the same
+    /// events, to 1e-9 s, and the same totals, to rounding ([`is_stepless`]).
+    const NEEDS_STEPS: bool = true;
 
     /// A row of the trace, in the order of [`columns`].
     fn row(&mut self, _: &[f64]) -> Result<(), Self::Error> {
@@ -220,6 +232,20 @@ pub fn measure_costs(scene: &Scene, summary: &mut Summary) {
 
 /// Runs `scene` without timing anything.
 fn simulate(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, Ended> {
+    if watch.needs_steps() {
+        return step_by_step(scene, watch);
+    }
+    match untraced::simulate(scene, watch)? {
+        untraced::Way::Whole(totals) => Ok(totals),
+        untraced::Way::Unfit(reported) => {
+            step_by_step(scene, &mut untraced::Later { watch, reported })
+        }
+        untraced::Way::Steps => step_by_step(scene, watch),
+    }
+}
+
+/// Runs `scene` with every step or row that it has.
+fn step_by_step(scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, Ended> {
     match scene.solver {
         SolverChoice::Reference => event_driven::simulate(scene, watch),
         SolverChoice::Ladder {

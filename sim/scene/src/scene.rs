@@ -23,7 +23,7 @@ use crate::reference::symptoms::NAMES;
 use crepitus_model::control::encoder::EncoderSettings;
 use crepitus_model::{Convention, SettingsError};
 use crepitus_plant::actuator::Actuator;
-use crepitus_plant::assembly::{Listed, assemble, assemble_with, boundary};
+use crepitus_plant::assembly::{Listed, PlantVisitor, assemble, assemble_with, boundary, compose};
 use crepitus_plant::boundary::Boundary;
 use crepitus_plant::chain::{Body, Chain};
 use crepitus_plant::effect::{Context, Effect, Given};
@@ -225,6 +225,15 @@ impl Scene {
     pub fn assemble(&self) -> Result<Plant, SettingsError> {
         let tick_s = self.step_s();
         assemble(&self.listed, &self.context(tick_s), !self.is_held())
+    }
+
+    /// Runs `visitor` with the plant, of the types that this scene calls for.
+    ///
+    /// # Errors
+    /// As [`Self::assemble`].
+    pub(crate) fn compose<V: PlantVisitor>(&self, visitor: V) -> Result<V::Output, SettingsError> {
+        let context = self.context(self.step_s());
+        compose(&self.listed, &context, !self.is_held(), visitor)
     }
 
     /// The plant with an actuator of the caller, which has its own device

@@ -1,16 +1,19 @@
 //! The motion of a scene, step by step, and the plant that goes along.
 
 use crepitus_model::Real;
-use crepitus_plant::actuator::Actuator;
 use crepitus_plant::boundary::MotionStep;
 use crepitus_plant::chain::Body;
-use crepitus_plant::{Motion, Piece, Plant};
+use crepitus_plant::mechanics::Mechanics;
+use crepitus_plant::piece::Parabola;
+use crepitus_plant::{Motion, Piece};
 use std::borrow::Borrow;
 
 /// Walks through a motion, which it owns or borrows.
 pub struct Walk<M> {
     motion: M,
     piece: Piece,
+    /// The piece, where its velocity is linear.
+    parabola: Option<Parabola>,
     clock: Clock,
     n: u64,
     time_s: f64,
@@ -56,6 +59,7 @@ impl<M: Borrow<Motion>> Walk<M> {
         let now = body(&piece, 0.0);
         Self {
             motion,
+            parabola: piece.parabola(),
             piece,
             clock: Clock::new(step_s),
             n: 0,
@@ -77,7 +81,7 @@ impl<M: Borrow<Motion>> Walk<M> {
     /// Goes on with another motion, from its beginning. It begins where this one is, with the same
     /// velocity: both sides have that to the bit.
     pub fn turn_to(&mut self, motion: M) {
-        self.piece = motion.borrow().piece(0.0);
+        self.enter(motion.borrow().piece(0.0));
         self.motion = motion;
         (self.n, self.time_s) = (0, 0.0);
     }
@@ -101,17 +105,40 @@ impl<M: Borrow<Motion>> Walk<M> {
     }
 
     /// The motion at both ends of the next step, just inside it.
-    #[inline]
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call of the loop, whose arguments and results would pass through memory"
+    )]
     pub fn step(&mut self) -> (Body, Body) {
         self.n += 1;
         self.time_s = self.clock.time_s(self.n);
         let from = self.now;
         while self.piece.end_s < self.time_s {
-            self.piece = self.motion.borrow().piece(self.piece.end_s);
+            self.enter(self.motion.borrow().piece(self.piece.end_s));
         }
-        let to = body(&self.piece, self.time_s);
+        let to = self.body_now();
         self.arrive(to);
         (from, to)
+    }
+
+    #[inline]
+    fn enter(&mut self, piece: Piece) {
+        self.parabola = piece.parabola();
+        self.piece = piece;
+    }
+
+    /// The motion at the time reached.
+    #[inline]
+    fn body_now(&self) -> Body {
+        let (angle_rad, omega_rad_s) = match &self.parabola {
+            Some(parabola) => parabola.angle_and_velocity(self.time_s),
+            None => self.piece.angle_and_velocity(self.time_s),
+        };
+        Body {
+            angle_rad,
+            omega_rad_s,
+        }
     }
 
     /// The end of a step within its piece, or at the end of that.
@@ -119,17 +146,27 @@ impl<M: Borrow<Motion>> Walk<M> {
     fn arrive(&mut self, to: Body) {
         self.now = to;
         if self.piece.end_s == self.time_s {
-            self.piece = self.motion.borrow().piece(self.time_s);
-            // Without a jump both sides are one velocity, to the bit.
-            if self.piece.jump {
-                self.now = body(&self.piece, self.time_s);
-            }
+            self.begin_piece();
+        }
+    }
+
+    /// Enters the piece that begins at the time reached.
+    #[cold]
+    fn begin_piece(&mut self) {
+        self.enter(self.motion.borrow().piece(self.time_s));
+        // Without a jump both sides are one velocity, to the bit.
+        if self.piece.jump {
+            self.now = self.body_now();
         }
     }
 
     /// Makes a [`step`](Self::step); `None` if the motion breaks within the step, which
     /// [`parts`](Self::parts) then has the parts of.
-    #[inline]
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call of the loop, whose arguments and results would pass through memory"
+    )]
     pub fn step_or_parts(&mut self) -> Option<(Body, Body)> {
         self.n += 1;
         self.time_s = self.clock.time_s(self.n);
@@ -137,9 +174,28 @@ impl<M: Borrow<Motion>> Walk<M> {
             return self.split();
         }
         let from = self.now;
-        let to = body(&self.piece, self.time_s);
+        let to = self.body_now();
         self.arrive(to);
         Some((from, to))
+    }
+
+    /// Makes a step that ends inside its piece, and returns the motion at both ends; `None`, and
+    /// nothing is done, for one that does not.
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call of the loop, whose arguments and results would pass through memory"
+    )]
+    pub(crate) fn step_within(&mut self) -> Option<(Body, Body)> {
+        let n = self.n + 1;
+        let time_s = self.clock.time_s(n);
+        if time_s >= self.piece.end_s {
+            return None;
+        }
+        (self.n, self.time_s) = (n, time_s);
+        let from = self.now;
+        self.now = self.body_now();
+        Some((from, self.now))
     }
 
     /// The parts of the step that has just been split.
@@ -178,7 +234,7 @@ impl<M: Borrow<Motion>> Walk<M> {
                 from = if next.jump { body(&next, at_s) } else { to };
                 part_s = at_s;
             }
-            self.piece = next;
+            self.enter(next);
         }
         let mut to = body(&self.piece, end_s);
         self.arrive(to);
@@ -195,30 +251,42 @@ impl<M: Borrow<Motion>> Walk<M> {
     }
 
     /// One step of the motion and of a plant that is held by it; returns the shaft at its
-    /// end, just inside it: before its velocity jumps, if it does.
+    /// end, just inside it, and just behind it: before and after its velocity jumps, if it does.
     #[inline]
-    pub fn advance<A: Actuator>(&mut self, plant: &mut Plant<A>) -> Body {
+    pub fn advance(&mut self, plant: &mut impl Mechanics) -> (Body, Body) {
         let (from, to) = self.step();
         plant.advance(&MotionStep {
             length_s: self.clock.step_s,
             from,
             to,
         });
+        self.arrive_with(plant, to)
+    }
+
+    /// The shaft of a plant at the end of a step, before and after its velocity jumps from that of
+    /// `to`.
+    #[inline]
+    fn arrive_with(&self, plant: &mut impl Mechanics, to: Body) -> (Body, Body) {
         let shaft = plant.shaft();
-        if self.now.omega_rad_s != to.omega_rad_s {
-            plant.jump(self.now.omega_rad_s);
+        if self.now.omega_rad_s == to.omega_rad_s {
+            return (shaft, shaft);
         }
-        shaft
+        plant.jump(self.now.omega_rad_s);
+        (shaft, plant.shaft())
     }
 
     /// Makes an [`advance`](Self::advance), split where the motion breaks; adds what the
     /// plant's shaft made of each break within the step, or as it began, to `cuts`.
-    #[inline]
-    pub fn advance_in_parts<A: Actuator>(
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call of the loop, whose arguments and results would pass through memory"
+    )]
+    pub fn advance_in_parts(
         &mut self,
-        plant: &mut Plant<A>,
+        plant: &mut impl Mechanics,
         cuts: &mut Vec<Cut>,
-    ) -> Body {
+    ) -> (Body, Body) {
         let (start_s, before) = (self.time_s, self.now);
         let to = match self.step_or_parts() {
             Some((from, to)) => {
@@ -234,18 +302,14 @@ impl<M: Borrow<Motion>> Walk<M> {
             }
             None => self.advance_through_parts(plant, (start_s, before), cuts),
         };
-        let shaft = plant.shaft();
-        if self.now.omega_rad_s != to.omega_rad_s {
-            plant.jump(self.now.omega_rad_s);
-        }
-        shaft
+        self.arrive_with(plant, to)
     }
 
     /// Advances `plant` through the parts of the step that began at this time, with this motion.
     #[cold]
-    fn advance_through_parts<A: Actuator>(
+    fn advance_through_parts(
         &self,
-        plant: &mut Plant<A>,
+        plant: &mut impl Mechanics,
         (start_s, before): (f64, Body),
         cuts: &mut Vec<Cut>,
     ) -> Body {
@@ -267,7 +331,7 @@ impl<M: Borrow<Motion>> Walk<M> {
 }
 
 /// Takes a plant over a break of its motion, which is `last` before it and `next` after.
-fn cut<A: Actuator>(plant: &mut Plant<A>, time_s: f64, (last, next): (Body, Body)) -> Cut {
+fn cut(plant: &mut impl Mechanics, time_s: f64, (last, next): (Body, Body)) -> Cut {
     let before = plant.shaft();
     if next.omega_rad_s != last.omega_rad_s {
         plant.jump(next.omega_rad_s);

@@ -1,15 +1,17 @@
 //! Cost of effects in instructions, counted by valgrind: an effect that a
-//! scene leaves out executes nothing, and the costs of those that it lists add
-//! up to that of the scene.
+//! scene leaves out executes nothing, the costs of those that it lists add
+//! up to that of the scene, and standard scenes cost what they did.
 //!
-//! Counts are those of this build's profile; only their ratios mean something.
+//! Counts are those of this build's profile; only their ratios mean something. The table of the
+//! standard scenes is that of the gate's build, and made again with
+//! `CARGO_INCREMENTAL=0 CREPITUS_BLESS=1 cargo test -p crepitus-scene --test instructions`.
 //! Without valgrind nothing is counted and the test reports it, unless
 //! `CREPITUS_NEEDS_VALGRIND` is set.
 
 use crepitus_plant::effect::Effect;
 use crepitus_plant::effects::EFFECTS;
 use crepitus_scene::run::Blind;
-use crepitus_scene::{Overrides, Scene, run};
+use crepitus_scene::{Overrides, Scene, instructions, run};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -37,9 +39,82 @@ fn scene_text(effects: &[&Effect], steps: u32) -> String {
     text
 }
 
-/// The measured process: does nothing unless it is given a scene.
+/// Change of a count from which on it is another, as a share: the next compiler's is.
+const TOLERANCE: f64 = 0.03;
+
+#[test]
+fn standard_scenes_cost_what_they_did() {
+    if !valgrind() {
+        return;
+    }
+    if cfg!(not(debug_assertions)) || option_env!("CARGO_INCREMENTAL") != Some("0") {
+        eprintln!("left out: the table is of the gate's build, with CARGO_INCREMENTAL=0");
+        return;
+    }
+    let scenes = instructions::standard().unwrap();
+    let counts = instructions::per_step(
+        &std::env::current_exe().unwrap(),
+        ["--exact", "counted_process", "--test-threads=1"],
+        (scenes.len(), STEPS),
+    )
+    .unwrap();
+    let rows = scenes.iter().zip(&counts);
+    let mut table = String::from("scene,instructions_per_step\n");
+    table.extend(rows.map(|((name, _), count)| format!("{name},{count:.0}\n")));
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/instructions.csv");
+    if std::env::var_os("CREPITUS_BLESS").is_some() {
+        std::fs::write(&file, &table).unwrap();
+        return;
+    }
+    let known = std::fs::read_to_string(&file).unwrap();
+    let changes = changes(&known, &table);
+    assert!(
+        changes.is_empty(),
+        "{changes:#?}: if that is meant, make the table again"
+    );
+}
+
+/// Rows of `table` that are not those of the `known` one within the tolerance.
+fn changes(known: &str, table: &str) -> Vec<String> {
+    assert_eq!(known.lines().count(), table.lines().count());
+    let number = |line: &str| -> f64 { line.rsplit(',').next().unwrap().parse().unwrap() };
+    let rows = known.lines().zip(table.lines()).skip(1);
+    let change = |(was, is): (&str, &str)| {
+        let change = number(is) / number(was) - 1.0;
+        (change.abs() > TOLERANCE).then(|| format!("{is}, which was {was}: {:+.1} %", 1e2 * change))
+    };
+    rows.filter_map(change).collect()
+}
+
+#[test]
+fn a_twentieth_more_or_less_is_a_change_and_a_hundredth_is_none() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/instructions.csv");
+    let known = std::fs::read_to_string(file).unwrap();
+    assert_eq!(known.lines().count(), 11);
+    let times = |factor: f64| -> String {
+        let cost = |line: &str| {
+            let (name, count) = line.rsplit_once(',').unwrap();
+            match count.parse::<f64>() {
+                Ok(count) => format!("{name},{:.0}\n", count * factor),
+                Err(_) => format!("{line}\n"),
+            }
+        };
+        known.lines().map(cost).collect()
+    };
+    assert_eq!(changes(&known, &times(1.05)).len(), 10);
+    assert_eq!(changes(&known, &times(0.95)).len(), 10);
+    assert_eq!(changes(&known, &times(1.01)), [""; 0]);
+}
+
+/// The measured process: does nothing unless it is given a scene, or counted.
 #[test]
 fn counted_process() {
+    if instructions::is_counted() {
+        let standard = instructions::standard().unwrap();
+        let scenes: Vec<_> = standard.into_iter().map(|(_, scene)| scene).collect();
+        instructions::run_counted(&scenes, STEPS);
+        return;
+    }
     let Some(file) = std::env::var_os(SCENE_VARIABLE) else {
         return;
     };

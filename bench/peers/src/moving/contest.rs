@@ -9,6 +9,9 @@ use crate::work::{Delivery, Runner, Task};
 use crepitus_model::Convention;
 use serde::Serialize;
 
+/// Least ratio to every peer.
+const AHEAD: f64 = 1.0;
+
 /// A motion under a convention, with all who do it.
 pub struct Case {
     /// The motion.
@@ -173,24 +176,31 @@ impl Case {
             ours: format!("reference, {}", self.convention.name()),
             ours_time: self.ours.time?,
             peer: best.and_then(|(peer, _)| Some((peer.name.clone(), peer.time?))),
-            required: self.required(),
+            required: Some(AHEAD),
         })
     }
 
-    /// Least ratio to every peer that is claimed. Under `frozen` no slip is searched for, and whether
-    /// ours or the best peer is faster differs from one process to the next.
-    fn required(&self) -> Option<f64> {
-        (self.convention == Convention::Physical).then_some(1.0)
+    /// Relative spread of a ratio: half the distances of the quartiles of both times.
+    fn spread(&self, peer: &Entrant) -> f64 {
+        let of = |time: Option<Summary>| time.map_or(f64::NAN, |t| t.spread);
+        (of(self.ours.time) + of(peer.time)) / 2.0
     }
 
-    /// Messages of the checks that fail.
+    /// Messages of the checks that fail: ours is to be ahead of every peer beyond the spread of the
+    /// runs.
     pub fn failures(&self) -> Vec<String> {
         let mut failures: Vec<String> = self
             .ratios()
+            .map(|(peer, ratio)| (peer, ratio, self.spread(peer)))
             // A ratio that is no number does not hold either.
-            .filter(|(_, ratio)| self.required().is_some_and(|least| !ratio.gt(&least)))
-            .map(|(peer, ratio)| {
-                format!("{}: {} is {ratio:.2} times as slow", self.name(), peer.name)
+            .filter(|(_, ratio, spread)| !(ratio * (1.0 - spread)).gt(&AHEAD))
+            .map(|(peer, ratio, spread)| {
+                format!(
+                    "{}: {} is {ratio:.2} times as slow ±{:.0} %",
+                    self.name(),
+                    peer.name,
+                    100.0 * spread
+                )
             })
             .collect();
         let libraries = |name: &str| {

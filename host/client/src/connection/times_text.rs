@@ -8,11 +8,11 @@ use crepitus_protocol::task_times::{
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
-/// What is said of a controller without times.
+/// Words about a controller without times.
 const NONE: &str = "not measured: a simulated device counts no cycles, and firmware reports its first ones a \
                     second after a start";
 
-/// What a controller's cycles are.
+/// Meaning of a controller's cycles.
 fn kind(identity: &Identity) -> &'static str {
     if identity.is_emulated() {
         "emulated cycles, not measured on hardware"
@@ -60,7 +60,7 @@ fn stack(times: &TaskTimes) -> String {
     format!("at most {used} of {all} bytes of stack in use")
 }
 
-/// What matters most of the times of the drive and of comms, a line each: the doctor's.
+/// Main times of the drive and of comms, a line each: the doctor's.
 pub fn summaries(handshake: &Handshake, times: &DeviceTimes) -> [(&'static str, String); 2] {
     parts(handshake, times).map(|(who, identity, tasks, times)| {
         let found = identity.zip(times);

@@ -12,9 +12,10 @@ use crate::studying::{self, Watch};
 use clap::Args;
 use crepitus_files::json_path;
 use crepitus_scene::cpu_time::CLOCK;
+use crepitus_scene::instructions;
 use crepitus_studies::accuracy::symptoms::SymptomPlan;
 use crepitus_studies::accuracy::{
-    self, AccuracyOutcome, Need, Question, Study, convergence, need_words, study,
+    self, AccuracyOutcome, Need, Question, Study, convergence, need_words, price, study,
 };
 use plan::Studied;
 use serde_json::json;
@@ -34,7 +35,7 @@ Examples:
 
 The answer comes first, --all prints every table. Every solver, in f32 and f64 and at steps from 1 ms to 2 µs, is compared with the reference \
 on four constant speeds, a hand-like sine, strokes and knee bends, the last two on the joint of every crepitus preset, and \
-timed on this machine in CPU time (median and quartiles); in f32 also behind the device's encoder. So is every other symptom, \
+timed on this machine in CPU time (median and quartiles), their instructions counted where valgrind is there; in f32 also behind the device's encoder. So is every other symptom, \
 on strokes, a steady movement and a tremor, timed beside a step of crepitus. With --target it is also \
 run on an emulated STM32F405: modelled cycles, 0 wait states; not measured on hardware. The worst \
 cycles are the worst observed, over inputs with breaks, matches and reversals.
@@ -112,6 +113,9 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         .transpose()
         .map_err(|e| Failure::Input(format!("--need: {e}")))?;
     let studied = plan::plan(arguments)?;
+    if instructions::is_counted() {
+        return price::run_counted(&studied.plan).map_err(|e| Failure::Work(e.to_string()));
+    }
     let out = match (&arguments.out, &need) {
         (Some(out), _) => Some(out.clone()),
         (None, None) => Some(PathBuf::from("out/accuracy")),
@@ -132,6 +136,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     // Fails before the work if the image cannot be built.
     let ladder = arguments.target.then(target::ladder).transpose()?;
     let mut study = study::run(&studied.plan, &mut Watch::new()).map_err(studying::failed)?;
+    if need.is_none()
+        && let Some(counts) = studying::counted((price::count(&studied.plan), price::STEPS))
+    {
+        study.price(&studied.plan, &counts);
+    }
     if let Some(mut ladder) = ladder {
         let scenes = &studied.plan.scenes;
         target::add(&mut study, scenes, arguments.quick, &mut ladder)?;

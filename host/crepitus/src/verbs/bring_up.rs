@@ -141,15 +141,15 @@ struct Session<'a> {
 impl Session<'_> {
     /// The connection, opened again if it was lost.
     fn client(&mut self) -> Result<&mut Client<Line>, Failure> {
-        let client = match self.client.take().filter(Client::is_connected) {
-            Some(client) => client,
-            None => {
-                let line = match self.simulated.take() {
-                    Some(line) => line,
-                    None => open_in_real_time(self.device)?,
-                };
-                Client::connect(line).map_err(failure)?
-            }
+        let known = self.client.take().filter(Client::is_connected);
+        let client = if let Some(client) = known {
+            client
+        } else {
+            let line = match self.simulated.take() {
+                Some(line) => line,
+                None => open_in_real_time(self.device)?,
+            };
+            Client::connect(line).map_err(failure)?
         };
         let client = self.client.insert(client);
         // The drive may be connected rows later.

@@ -10,10 +10,9 @@ use crate::results;
 use crate::screen::All;
 use crate::studying::{self, Watch};
 use clap::Args;
-use crepitus_scene::shipped;
-use crepitus_scene::{Overrides, Scene, SceneError};
+use crepitus_scene::{Overrides, Scene, SceneError, instructions, shipped};
 use crepitus_studies::effects::{
-    EffectsError, Plan, Refusal, Tolerance, refusal, run as study_effects,
+    EffectsError, Plan, Refusal, Tolerance, price, refusal, run as study_effects,
 };
 use std::path::{Path, PathBuf};
 
@@ -29,7 +28,7 @@ Examples:
 
 Without a SCENE all effects are listed, with --all their parameters, too. With one, each of its effects is \
 left out in turn and each absent one added: how much that changes the torque at the hand (RMS, \
-peak, three bands of frequency, number of events), and what it costs (time of a step, states). The answer comes first.
+peak, three bands of frequency, number of events), and what it costs (time of a step, its instructions where valgrind is there, states). The answer comes first.
 
 A TOLERANCE is a list of limits: torque (rms difference of the torque at the hand, N·m), peak \
 (largest difference, N·m), events (relative difference of the number of events). The answer is \
@@ -76,6 +75,10 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         };
     };
     let plan = plan(arguments, path)?;
+    if instructions::is_counted() {
+        instructions::run_counted(&price::to_count(&plan.scene), price::STEPS);
+        return Ok(());
+    }
     let out = match &arguments.out {
         Some(out) => out.clone(),
         None => results::named_after(&plan.scene.file, "", "-effects")?,
@@ -83,7 +86,11 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let inputs = results::inputs(path, [&plan.scene], None);
     let claim = arguments.force.claim("effects", inputs);
     let folder = studying::folder(&out, claim, &["effects.csv"])?;
-    let study = study_effects(&plan, &mut Watch::new()).map_err(|e| failed(&plan.scene, e))?;
+    let mut study = study_effects(&plan, &mut Watch::new()).map_err(|e| failed(&plan.scene, e))?;
+    let count = price::to_count(&plan.scene).len();
+    if let Some(counts) = studying::counted((count, price::STEPS)) {
+        study.price(&plan.scene, &counts);
+    }
     studying::write(&study, (folder, &out), &arguments.pictures)?;
     studying::show(&study, &out, arguments.all, as_json)
 }

@@ -70,6 +70,8 @@ pub struct Point {
     pub worst_cycles: f64,
     /// Mean instructions of a step on the target; NaN likewise.
     pub instructions_per_step: f64,
+    /// Mean instructions of a step on the host; NaN if not counted.
+    pub host_instructions_per_step: f64,
 }
 
 impl Point {
@@ -114,6 +116,7 @@ pub(crate) mod tests {
             cycles_per_step: f64::NAN,
             worst_cycles: f64::NAN,
             instructions_per_step: f64::NAN,
+            host_instructions_per_step: f64::NAN,
         }
     }
 }

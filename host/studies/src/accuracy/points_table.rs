@@ -35,6 +35,9 @@ pub fn points_table(points: &[Point]) -> Table<'_, Point> {
         .column("cycles_per_step", |p| p.cycles_per_step)
         .column("worst_cycles", |p| p.worst_cycles)
         .column("instructions_per_step", |p| p.instructions_per_step)
+        .column("host_instructions_per_step", |p| {
+            p.host_instructions_per_step
+        })
 }
 
 #[cfg(test)]

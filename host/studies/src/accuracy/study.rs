@@ -193,12 +193,13 @@ fn point(
         cycles_per_step: f64::NAN,
         worst_cycles: f64::NAN,
         instructions_per_step: f64::NAN,
+        host_instructions_per_step: f64::NAN,
     }
 }
 
 /// The rungs with a meaning, in each precision; behind the encoder in the device's, if that is
 /// studied.
-fn contestants(plan: &Plan, scene: &StudyScene) -> Vec<Contestant> {
+pub(super) fn contestants(plan: &Plan, scene: &StudyScene) -> Vec<Contestant> {
     let is_device = |p: &Precision| scene.input == Input::Exact || *p == Precision::F32;
     Solver::ALL
         .into_iter()

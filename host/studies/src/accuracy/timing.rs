@@ -15,8 +15,8 @@ use crate::sampling::{CHUNK_STEPS, Sampling};
 use crepitus_ladder::loops::{Loops, Stepper};
 use crepitus_model::solver::Solver;
 use crepitus_model::{Real, SettingsError, ShaftStep};
-use crepitus_scene::cpu_time;
 use crepitus_scene::scene::Precision;
+use crepitus_scene::{cpu_time, instructions};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -88,6 +88,17 @@ impl<'a> Track<'a> {
         scene: &'a StudyScene,
         sampling: &Sampling<'_>,
     ) -> Result<Self, SettingsError> {
+        Ok(Self {
+            reading: cpu_time::reading_cost(),
+            ..Self::untimed(scene, sampling)?
+        })
+    }
+
+    /// A track of which nothing is timed: its clock is not read, as under valgrind it cannot be.
+    pub(super) fn untimed(
+        scene: &'a StudyScene,
+        sampling: &Sampling<'_>,
+    ) -> Result<Self, SettingsError> {
         let length = sampling.steps().min(MOST_STEPS);
         let start = (sampling.steps() / 4).saturating_sub(length / 2);
         let most = usize::try_from(length).unwrap_or(usize::MAX);
@@ -97,7 +108,7 @@ impl<'a> Track<'a> {
         Ok(Self {
             scene,
             step_s: sampling.step_s(),
-            reading: cpu_time::reading_cost(),
+            reading: Duration::ZERO,
             single,
             double,
         })
@@ -111,6 +122,32 @@ impl<'a> Track<'a> {
             Precision::F32 => self.run(solver, &self.single),
             Precision::F64 => self.run(solver, &self.double),
         }
+    }
+
+    /// Steps a joint through the first `most` steps, in a loop that is counted.
+    pub(super) fn count(
+        &self,
+        (solver, precision): Contestant,
+        most: u32,
+    ) -> Result<(), SettingsError> {
+        match precision {
+            Precision::F32 => self.count_through(solver, &self.single, most),
+            Precision::F64 => self.count_through(solver, &self.double, most),
+        }
+    }
+
+    fn count_through<F: Loops>(
+        &self,
+        solver: Solver,
+        steps: &[ShaftStep<F>],
+        most: u32,
+    ) -> Result<(), SettingsError> {
+        let omega = steps.first().map_or(F::ZERO, |s| s.omega_start_rad_s);
+        let most = usize::try_from(most).unwrap_or(usize::MAX).min(steps.len());
+        let (settings, step_s) = (&self.scene.settings, self.step_s);
+        F::joint(settings, solver, step_s, omega, &mut |stepper| {
+            instructions::counted(&mut || stepper(steps.get(..most).unwrap_or(steps)));
+        })
     }
 
     fn run<F: Loops>(&self, solver: Solver, steps: &[ShaftStep<F>]) -> Result<f64, SettingsError> {

@@ -9,6 +9,10 @@ mod symptoms;
 mod table;
 mod target;
 
+#[cfg(test)]
+pub(crate) use table::instructions_at_the_tick;
+pub(crate) use table::nearest_to_the_tick;
+
 use crate::accuracy::actuator::actuator_table;
 use crate::accuracy::orders::{Order, Orders};
 use crate::accuracy::points_table::points_table;

@@ -37,6 +37,13 @@ pub fn effects_table(rows: &[Row]) -> Table<'_, Row> {
         })
         .headed("added")
         .column("added_ns_resolution", added(|a| a.time.ns_resolution))
+        .group("instructions a step")
+        .column("instructions_per_step", |row| row.instructions_per_step)
+        .headed("all")
+        .rounded(fixed::<0>)
+        .column("added_instructions_per_step", added(|a| a.instructions))
+        .headed("added")
+        .rounded(fixed::<0>)
         .group("the effect adds, mN·m")
         .column("added_rms_nm", added(|a| a.rms_nm))
         .headed("RMS")
@@ -99,6 +106,7 @@ mod tests {
             states: 3,
             ns_per_step: 0.1 + 0.2,
             time_spread: 0.05,
+            instructions_per_step: 321.5,
             outcome: Outcome::Ran(Ran {
                 torque: Torque {
                     rms_nm: 1.0 / 3.0,
@@ -115,6 +123,7 @@ mod tests {
                         ns_per_step: None,
                         ns_resolution: 0.5,
                     },
+                    instructions: f64::NAN,
                 }),
             }),
         };
@@ -133,6 +142,8 @@ mod tests {
             ("nan", "0.5")
         );
         assert_eq!((cell("events"), cell("added_events")), ("7", "-3"));
+        let counts = ["instructions_per_step", "added_instructions_per_step"].map(cell);
+        assert_eq!(counts, ["321.5", "nan"]);
 
         row.outcome = Outcome::Failed {
             failure: "\"euler\" diverged, soon".to_owned(),

@@ -27,6 +27,9 @@ pub struct EffectsStudy {
     pub rows: Vec<Row>,
     /// Number of timings, of which the fastest counts.
     pub timings: u32,
+    /// Instructions of a step of the motion alone, without any effect: what there is around them
+    /// all. NaN where nothing was counted.
+    pub loop_instructions: f64,
     /// The smallest set of effects, if a tolerance was given.
     pub answer: Option<Answer>,
     /// The scene's effects added one by one; empty without a joint or a plant.

@@ -19,6 +19,8 @@ pub struct Row {
     pub ns_per_step: f64,
     /// Relative excess of the first quartile of the timings over the fastest.
     pub time_spread: f64,
+    /// Instructions of a step without outputs; NaN where nothing was counted.
+    pub instructions_per_step: f64,
     /// Outcome of the run.
     pub outcome: Outcome,
 }
@@ -62,6 +64,8 @@ pub struct Added {
     /// is known: the effect saves as much work as it makes, or it is within
     /// the noise.
     pub time: AddedTime,
+    /// Instructions of a step; NaN where nothing was counted.
+    pub instructions: f64,
 }
 
 impl Row {

@@ -70,6 +70,7 @@ pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<EffectsStudy, Effec
         states: states(scene),
         ns_per_step: scene_time.ns,
         time_spread: scene_time.spread,
+        instructions_per_step: f64::NAN,
         outcome: Outcome::Ran(own),
     }];
     for ((variant, variant_run), time) in variants.iter().zip(&variant_runs).zip(times) {
@@ -96,6 +97,7 @@ pub fn run(plan: &Plan, watcher: &mut dyn Watcher) -> Result<EffectsStudy, Effec
         warnings,
         rows,
         timings: TIMINGS,
+        loop_instructions: f64::NAN,
         answer,
         build_up,
         build_up_torques,
@@ -231,6 +233,7 @@ fn row(
                 events: sign * signed(variant_run.ran.events, whole.events),
                 states: sign * signed(count(states), count(scene.states)),
                 time: added_time,
+                instructions: f64::NAN,
             }),
             ..variant_run.ran
         }),
@@ -245,6 +248,7 @@ fn row(
         states,
         ns_per_step: time.ns,
         time_spread: time.spread,
+        instructions_per_step: f64::NAN,
         outcome,
     }
 }

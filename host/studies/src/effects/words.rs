@@ -107,6 +107,7 @@ fn notes(study: &EffectsStudy) -> Vec<String> {
     ]
     .map(str::to_owned)
     .to_vec();
+    notes.push(table::counted(study));
     notes.extend(summary::unsteady(study));
     notes
 }

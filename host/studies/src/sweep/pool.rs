@@ -86,11 +86,12 @@ impl Stop {
 }
 
 /// Observer that only checks the stop flag.
-struct Unseen<'s>(&'s Stop);
+pub(crate) struct Unseen<'s>(pub(crate) &'s Stop);
 
 impl Observer for Unseen<'_> {
     type Error = Ended;
     const WANTS_ROWS: bool = false;
+    const NEEDS_STEPS: bool = false;
 
     fn progress(&mut self, _: f64) -> Result<(), Ended> {
         self.0.check()

@@ -1,12 +1,12 @@
 //! Runs with a trace file each.
 
 use crate::sweep::plan::Plan;
-use crate::sweep::pool::{Ended, Stop};
+use crate::sweep::pool::{Ended, Stop, Unseen};
 use crate::sweep::row::Row;
 use crate::sweep::store_error::{StoreError, at};
 use crepitus_files::output::{Hashed, OwnedFolder, temporary_in};
 use crepitus_scene::output::TraceCsv;
-use crepitus_scene::run::columns;
+use crepitus_scene::run::{columns, is_stepless};
 use crepitus_scene::{Observer, RunError, run};
 use std::fs;
 use std::io::{self, BufWriter, Write};
@@ -96,6 +96,11 @@ pub fn traced(plan: &Plan, point: u64, to: &Traces, stop: &Stop) -> Result<Row, 
         file.flush().map_err(failed)?;
         let file = file.into_inner().map_err(|e| failed(e.into_error()))?;
         to.put(file, point).map_err(failed)?;
-        Ok(summary)
+        // A row is one of its point, to the bit, whether there is a trace or not.
+        if is_stepless(scene) {
+            run(scene, &mut Unseen(stop))
+        } else {
+            Ok(summary)
+        }
     })
 }

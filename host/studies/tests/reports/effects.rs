@@ -31,6 +31,7 @@ fn ran(rms_nm: f64, ns: f64) -> Outcome {
                 ns_per_step: (ns > 1.0).then_some(ns),
                 ns_resolution: if ns.is_finite() { 1.0 } else { f64::NAN },
             },
+            instructions: 10.0 * ns,
         }),
     })
 }
@@ -43,6 +44,7 @@ fn row(change: Change, effect: &'static str, rms_nm: f64, ns: f64) -> Row {
         states: 3,
         ns_per_step: 100.0 + ns,
         time_spread: 0.02,
+        instructions_per_step: 10.0 * ns,
         outcome: ran(rms_nm, ns),
     }
 }
@@ -82,6 +84,7 @@ fn study() -> EffectsStudy {
             },
         ],
         timings: 25,
+        loop_instructions: 76.0,
         answer: None,
         build_up: Vec::new(),
         build_up_torques: Vec::new(),

@@ -21,6 +21,9 @@ macro_rules! effects {
             <$symptom::$s_law<f64> as Law>::WORDS,
         )),*];
 
+        /// A bit for each symptom.
+        const SYMPTOM_BITS: u32 = $(bit::<$symptom::$s_law<f64>>())|*;
+
         impl<F: Real> Effects<F> {
             /// Goes on in ticks of another length, see [`Law::retime`]: the symptoms alone, what
             /// is added to them knows whole ticks only.
@@ -37,6 +40,42 @@ macro_rules! effects {
                     shown.added.$symptom = law.resting_nm(place);
                     shown.torque_nm += shown.added.$symptom;
                 })*
+            }
+
+            /// Returns whether all that are on are symptoms of which none gives energy: a tick is
+            /// then that of each alone.
+            pub fn is_passive(&self) -> bool {
+                let is_active = $(self.$symptom.as_ref().is_some_and(Law::is_active))||*;
+                self.on & !SYMPTOM_BITS == 0 && !is_active
+            }
+
+            /// Follows the joint with the symptom at a place of the table: the torque that it
+            /// adds, N·m. For one that is passive; without a travel to be followed it is held.
+            #[inline(always)]
+            pub fn follow(
+                &mut self,
+                place: usize,
+                travel: Option<&Travel<F>>,
+                added: &mut Added<F>,
+                observe: &mut impl Observe<F>,
+            ) -> F {
+                let mut besides = Besides::NOTHING;
+                $(if place == const { bit::<$symptom::$s_law<f64>>().trailing_zeros() as usize } {
+                    if let Some(law) = &mut self.$symptom {
+                        added.$symptom = law_nm(law, travel, &mut besides, observe);
+                    }
+                    return added.$symptom;
+                })*
+                F::ZERO
+            }
+
+            /// Phases of the symptoms that are on.
+            pub fn phases(&self) -> Phases {
+                let mut shown = Shown::<F>::nothing();
+                $(if let Some(law) = &self.$symptom {
+                    note(Some(law), F::ZERO, &mut shown);
+                })*
+                shown.phases
             }
 
             /// Ends a part of a tick that began as `before`: what knows whole ticks only is as it
@@ -97,9 +136,11 @@ macro_rules! effects {
             $(#[doc = concat!("Of `", stringify!($effect), "`.")] pub $effect: F,)*
         }
 
-        /// The laws alone, around a bare solver.
+        /// The laws alone, around a bare solver. A tick steps through those that are on.
         #[derive(Clone, Debug, PartialEq)]
         pub struct Effects<F: Real> {
+            /// A bit for each that was on when it was made, at its place in the table.
+            on: u32,
             $(#[doc = concat!("`", stringify!($effect), "`.")] pub $effect: Option<$effect::$law<F>>,)*
             /// Tank from which symptoms that are no springs are paid.
             pub tank: Tank<F>,
@@ -157,7 +198,10 @@ macro_rules! effects {
             /// [`SettingsError`] if a setting or the tick is out of range.
             pub fn laws<F: Real>(&self, timing: &Timing) -> Result<Effects<F>, SettingsError> {
                 let made = self.changes_from_none::<F>(timing)?;
+                let bits = [$((self.$effect.is_some(), const { bit::<$effect::$law<f64>>() })),*];
+                let are_on = bits.into_iter().filter(|(is_on, _)| *is_on);
                 Ok(Effects {
+                    on: are_on.fold(0, |on, (_, bit)| on | bit),
                     $($effect: made.$effect.flatten().map(<$effect::$law<F> as DeviceEffect<F>>::new),)*
                     tank: tank(timing),
                     scale: made.scale,
@@ -216,9 +260,15 @@ macro_rules! effects {
                     .fold(F::ZERO, |sum, (_, nm)| sum + nm)
             }
 
+            /// Contributions in the order of the table.
+            #[inline]
+            pub fn each(&self) -> [F; SPECS.len()] {
+                [$(self.$effect),*]
+            }
+
             /// Contribution of the effect at a place of the table.
             pub fn get(&self, place: usize) -> Option<F> {
-                [$(self.$effect),*].get(place).copied()
+                self.each().get(place).copied()
             }
         }
 
@@ -229,7 +279,8 @@ macro_rules! effects {
                 })*
             }
 
-            #[inline]
+            // Always: what it tells the laws then stays in registers.
+            #[inline(always)]
             fn tick(
                 &mut self,
                 seen: &ShaftEstimate<F>,
@@ -237,16 +288,46 @@ macro_rules! effects {
                 shown: &mut Shown<F>,
                 observe: &mut impl Observe<F>,
             ) {
+                if self.on == 0 {
+                    return;
+                }
+                let has_symptoms = self.on & SYMPTOM_BITS != 0;
                 let paid_share = self.tank.open(input.travel_rad().unwrap_or(F::ZERO));
-                let travel = Travel::plausible(input, &seen.place, &self.scale);
+                let travel = has_symptoms
+                    .then(|| Travel::plausible(input, &seen.place, &self.scale))
+                    .flatten();
                 let tick = Tick::of(seen, input, travel.as_ref(), paid_share);
-                $(if let Some(law) = &mut self.$effect {
-                    let added = law.added(&tick, shown, observe);
-                    give(law.target(), added, shown);
-                    shown.added.$effect = added;
-                    note(Some(law), added, shown);
+                let mut left = self.on;
+                while left != 0 {
+                    self.act(left.trailing_zeros(), &tick, shown, observe);
+                    left &= left.wrapping_sub(1);
+                }
+                if has_symptoms {
+                    self.tank.close(shown.active_nm);
+                }
+            }
+        }
+
+        impl<F: Real> Effects<F> {
+            /// Adds what the effect at a place of the table does: one jump, whatever the table's
+            /// length.
+            #[inline(always)]
+            fn act<O: Observe<F>>(
+                &mut self,
+                place: u32,
+                tick: &Tick<'_, F>,
+                shown: &mut Shown<F>,
+                observe: &mut O,
+            ) {
+                $(if place == const { bit::<$effect::$law<f64>>().trailing_zeros() } {
+                    if let Some(law) = &mut self.$effect {
+                        let added = law.added(tick, shown, observe);
+                        give(law.target(), added, shown);
+                        shown.added.$effect = added;
+                        note(Some(law), added, shown);
+                    }
+                    return;
                 })*
-                self.tank.close(shown.active_nm);
             }
         }
 

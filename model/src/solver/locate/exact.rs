@@ -24,6 +24,8 @@ pub(super) const SEARCH_STEPS: u32 = 64;
 impl<F: Real> Locate<F> for ExactEvents {
     type Shape = Linear;
 
+    const LEAVES_OUT_CHORDS: bool = true;
+
     #[inline]
     fn break_time(path: &StickPath<F>, sense: Sense, limit_nm: F, length_s: F) -> Option<F> {
         let left = limit_nm - sense.of_signed(path.torque_nm);

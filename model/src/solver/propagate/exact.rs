@@ -25,6 +25,13 @@ impl<F: Real> Propagate<F> for Exact<F> {
         self.whole_step.apply(x, v)
     }
 
+    const IS_LINEAR: bool = true;
+
+    #[inline]
+    fn whole_step(&self) -> Option<&Transition<F>> {
+        Some(&self.whole_step)
+    }
+
     #[inline]
     fn part(&self, x: F, v: F, time_s: F) -> (F, F) {
         self.oscillator.moved(x, v, time_s)

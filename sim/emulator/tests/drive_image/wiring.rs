@@ -2,6 +2,7 @@
 //! running image, one at a time.
 
 use crate::host::{Host, examination, image};
+use crepitus_emulator::Time;
 use crepitus_protocol::counters::DriveCounter;
 use crepitus_protocol::host::{Answer, Operation};
 
@@ -194,19 +195,20 @@ fn timers_start_together() {
     }
 }
 
-/// A byte that the stream has counted is not taken before it is in memory.
+/// A byte that the stream has counted is not taken before it is in memory: whenever bytes come, in steps of
+/// 0.1 µs through the 2.4 µs of one.
 #[test]
 fn a_byte_that_is_not_in_memory_yet_is_left() {
     let Some(image) = image() else { return };
-    let mut host = Host::new(&image, &examination());
-    host.board.mcu_mut().set_memory_lag(24);
-    host.run(1_000);
-    host.arm();
-    host.run(20_000);
-    let Ok(Answer::Counters(counters)) = host.ask(Operation::Counters) else {
-        panic!("no counters");
-    };
-    let count = |counter: DriveCounter| counters.drive[counter.index()];
-    assert!(count(DriveCounter::Frames) > 900);
-    assert_eq!(count(DriveCounter::Discarded), 0);
+    for late in (0..24).map(|step| Time::from_units(step * 34)) {
+        let mut host = Host::late(&image, &examination(), &[], late);
+        host.board.mcu_mut().set_memory_lag(24);
+        host.run(1_500);
+        let Ok(Answer::Counters(counters)) = host.ask(Operation::Counters) else {
+            panic!("no counters");
+        };
+        let count = |counter: DriveCounter| counters.drive[counter.index()];
+        assert!(count(DriveCounter::Frames) > 60, "{late:?}");
+        assert_eq!(count(DriveCounter::Discarded), 0, "{late:?}");
+    }
 }

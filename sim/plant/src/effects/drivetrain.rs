@@ -16,7 +16,7 @@
 //! is not counted in.
 
 use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, sense_of};
-use crate::effect::{Effect, Part, numbers, parameters};
+use crate::effect::{Effect, Given, Part, numbers, parameters};
 use crate::energy_balance::{Account, EnergyBalance};
 use crepitus_model::Sense;
 
@@ -32,21 +32,7 @@ pub const EFFECT: Effect = Effect {
     },
     choices: &[],
     needs: &[],
-    part: Part::Link(|given, _, left| {
-        let [inertia_kg_m2, friction_nm, load_loss] = numbers(given);
-        Box::new(Drivetrain {
-            left,
-            gear: Gear {
-                inertia_kg_m2,
-                friction_nm,
-                load_loss,
-            },
-            mode: Mode::Held,
-            found: None,
-            shown_nm: 0.0,
-            lost_j: 0.0,
-        })
-    }),
+    part: Part::Link(|given, _, left| Box::new(Drivetrain::new(given, left))),
 };
 
 const NAME: &str = "drivetrain";
@@ -80,8 +66,9 @@ enum Mode {
     Sliding(Sense),
 }
 
-struct Drivetrain {
-    left: Box<dyn Chain>,
+/// A chain that ends in a gear with the rotor behind it.
+pub(crate) struct Drivetrain<L> {
+    left: L,
     gear: Gear,
     mode: Mode,
     /// Instant in the step at which the last check saw the rotor stop.
@@ -91,7 +78,24 @@ struct Drivetrain {
     lost_j: f64,
 }
 
-impl Drivetrain {
+impl<L: Chain> Drivetrain<L> {
+    /// Returns the gear with these numbers, behind `left`.
+    pub(crate) fn new(given: &Given, left: L) -> Self {
+        let [inertia_kg_m2, friction_nm, load_loss] = numbers(given);
+        Self {
+            left,
+            gear: Gear {
+                inertia_kg_m2,
+                friction_nm,
+                load_loss,
+            },
+            mode: Mode::Held,
+            found: None,
+            shown_nm: 0.0,
+            lost_j: 0.0,
+        }
+    }
+
     fn limit_nm(&self, step: &Step) -> f64 {
         self.gear.limit_nm(step.load_nm)
     }
@@ -156,9 +160,9 @@ impl Drivetrain {
     }
 }
 
-impl Chain for Drivetrain {
+impl<L: Chain> Chain for Drivetrain<L> {
     fn left(&self) -> Option<&dyn Chain> {
-        Some(&*self.left)
+        Some(&self.left)
     }
 
     fn fold(&mut self, step: &Step, body: &Body) -> Push {

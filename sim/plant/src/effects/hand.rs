@@ -33,6 +33,7 @@ use crate::effect::{Effect, Part, numbers, parameters};
 use crate::energy_balance::{Account, EnergyBalance};
 use crepitus_model::parameters::Choice;
 use grip::{Grip, Palm};
+use std::cell::Cell;
 
 /// The effect.
 pub const EFFECT: Effect = Effect {
@@ -75,7 +76,11 @@ pub const EFFECT: Effect = Effect {
             weight: chain.weight(),
             given_j: 0.0,
         };
-        let hand = Hand { arm, lift };
+        let hand = Hand {
+            arm,
+            lift,
+            known: Cell::new(None),
+        };
         match Palm::of(given.choices[0], lever, palm_factor) {
             None => Box::new(hand),
             Some(palm) => Box::new(Grip::new(hand, palm)),
@@ -116,10 +121,14 @@ impl Lift {
 struct Hand {
     arm: Arm,
     lift: Lift,
+    /// The intent in the stretch looked at last, between these fractions of the step: a stretch
+    /// that is solved is settled, too, and the weight of a leg takes trigonometry.
+    known: Cell<Option<(f64, f64, Intent)>>,
 }
 
 /// The arm in one stretch: mean of the intended angle, of the intended
 /// velocity, and the torque that lifts the leg.
+#[derive(Clone, Copy)]
 struct Intent {
     angle_rad: f64,
     omega_rad_s: f64,
@@ -128,6 +137,17 @@ struct Intent {
 
 impl Hand {
     fn intent(&self, stretch: &Stretch) -> Intent {
+        if let Some((from, to, intent)) = self.known.get()
+            && (from, to) == (stretch.from, stretch.to)
+        {
+            return intent;
+        }
+        let intent = self.found_intent(stretch);
+        self.known.set(Some((stretch.from, stretch.to, intent)));
+        intent
+    }
+
+    fn found_intent(&self, stretch: &Stretch) -> Intent {
         let motion = &self.arm.motion;
         let (a, b) = (motion.angle_rad(stretch.from), motion.angle_rad(stretch.to));
         let angle_rad = f64::midpoint(a, b);
@@ -143,6 +163,7 @@ impl Boundary for Hand {
     fn begin(&mut self, motion: &MotionStep) {
         self.arm.motion = *motion;
         self.arm.intended = motion.to;
+        self.known.set(None);
     }
 
     fn solve(&mut self, stretch: &Stretch, body: &Body, push: Push) -> Flow {

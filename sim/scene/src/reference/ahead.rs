@@ -7,7 +7,7 @@
 //! grow, so that a phase that does not end costs few of them.
 
 use super::{Reference, State};
-use crepitus_model::{Convention, Sense};
+use crepitus_model::Sense;
 use crepitus_plant::piece::Curve;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -46,7 +46,7 @@ impl Ahead {
 
 impl Reference<'_> {
     /// The end of the present phase, if it is not after `horizon_s`, which is
-    /// within the piece.
+    /// within the piece. Not asked for in a frozen slip, whose end is known.
     #[inline(never)]
     pub(super) fn look_ahead<B>(
         &mut self,
@@ -59,12 +59,8 @@ impl Reference<'_> {
             self.ahead.end = match self.state {
                 State::Stick { theta, phi } => self.find_break(theta, phi, (from_s, to_s), poll)?,
                 State::Slip(slip) => {
-                    let time_s = if self.settings.convention == Convention::Frozen {
-                        Some(slip.end_s)
-                    } else {
-                        self.find_match(&slip, (from_s, to_s), poll)?
-                    };
                     let sense = slip.sense;
+                    let time_s = self.find_match(&slip, (from_s, to_s), poll)?;
                     time_s.map(|time_s| PhaseEnd { time_s, sense })
                 }
             };

@@ -4,6 +4,7 @@ use super::Reference;
 use super::ahead::PhaseEnd;
 use super::first_root::{Sample, Touch, first_root};
 use super::parabola::Parabola;
+use super::rising::Answer;
 use crepitus_model::solver::locate::earlier;
 use crepitus_model::{Convention, Sense};
 use crepitus_plant::ShaftState;
@@ -94,12 +95,19 @@ impl Reference<'_> {
     ) -> ControlFlow<B, Option<(f64, Sense)>> {
         let limit_nm = self.settings.parameters.static_torque_nm;
         let inertial = self.settings.convention == Convention::Physical;
-        let shaft = self.piece.at(from_s);
-        let (torque_nm, rate) = self.torque_and_rate(anchor, inertial, &shaft);
+        let later;
+        // No copy: the shaft may just have been written, and not as a whole.
+        let shaft = if from_s == self.time_s {
+            &self.now
+        } else {
+            later = self.piece.at(from_s);
+            &later
+        };
+        let (torque_nm, rate) = self.torque_and_rate(anchor, inertial, shaft);
         if self.piece.is_parabolic() {
             // So is the torque.
             let curvature = self.settings.parameters.stiffness_nm_per_rad * shaft.omega_dot;
-            let slack = self.limit_slack_nm(&shaft);
+            let slack = self.limit_slack_nm(shaft);
             let at = |sense: Sense| {
                 Parabola {
                     left: limit_nm - sense.of_signed(torque_nm),
@@ -112,6 +120,34 @@ impl Reference<'_> {
             };
             return ControlFlow::Continue(earlier(at(Sense::Positive), at(Sense::Negative)));
         }
+        if !inertial {
+            match self.surely_breaks(anchor, (from_s, to_s), shaft, torque_nm) {
+                Answer::None => return ControlFlow::Continue(None),
+                Answer::Break(time_s, sense) => {
+                    return ControlFlow::Continue(Some((time_s, sense)));
+                }
+                Answer::Unknown => {}
+            }
+        }
+        // First where it is going.
+        let ahead = if rate < 0.0 {
+            Sense::Negative
+        } else {
+            Sense::Positive
+        };
+        self.search_limit(anchor, (from_s, to_s), (ahead, inertial), poll)
+    }
+
+    /// The first time at which |T| reaches the static limit, by a search that cannot miss it: in the
+    /// sense `ahead`, then the other way, no further than that.
+    pub(super) fn search_limit<B>(
+        &self,
+        anchor: (f64, f64),
+        (from_s, to_s): (f64, f64),
+        (ahead, inertial): (Sense, bool),
+        poll: &mut impl FnMut() -> ControlFlow<B>,
+    ) -> ControlFlow<B, Option<(f64, Sense)>> {
+        let limit_nm = self.settings.parameters.static_torque_nm;
         let mut at = |sense, to_s| {
             let mark = Mark {
                 sense,
@@ -120,12 +156,6 @@ impl Reference<'_> {
             };
             self.reaches(anchor, mark, (from_s, to_s), poll)
                 .map_continue(|found| found.map(|time_s| (time_s, sense)))
-        };
-        // First where it is going; then the other way, no further than that.
-        let ahead = if rate < 0.0 {
-            Sense::Negative
-        } else {
-            Sense::Positive
         };
         let first = at(ahead, to_s)?;
         let other = at(ahead.opposite(), first.map_or(to_s, |(time_s, _)| time_s))?;

@@ -46,16 +46,24 @@ impl Repeat {
 impl Reference<'_> {
     /// Begins to repeat, at the beginning of a stick: from now on it is one cycle after the
     /// other, if it comes back to where it began.
+    #[inline]
     pub(super) fn begin_repeating(&mut self) {
-        self.repeat = self.cycle().map(|cycle| Repeat {
+        self.repeat = None;
+        if self.piece.is_steady() {
+            self.repeat_steadily();
+        }
+    }
+
+    /// A call: on a moving hand nothing repeats.
+    #[inline(never)]
+    fn repeat_steadily(&mut self) {
+        let cycle = self.cycle().map(|cycle| Repeat {
             origin_s: self.time_s,
             count: 0.0,
             cycle,
         });
         // A cycle shorter than the resolution of time does not count.
-        self.repeat = self
-            .repeat
-            .filter(|r| r.break_s() > r.origin_s && r.end_s() > r.break_s());
+        self.repeat = cycle.filter(|r| r.break_s() > r.origin_s && r.end_s() > r.break_s());
     }
 
     /// Carries out what is left of the present cycle up to `horizon_s`, and
@@ -132,13 +140,13 @@ impl Reference<'_> {
         })
     }
 
-    /// The cycle that begins with the stick that begins now, if it repeats.
+    /// The cycle that begins with the stick that begins now, at a constant velocity, if it repeats.
     fn cycle(&self) -> Option<Cycle> {
         let State::Stick { theta, phi } = self.state else {
             return None;
         };
         let omega = self.now.omega_rad_s;
-        let sense = Sense::of(omega).filter(|_| self.piece.is_steady() && !self.touches())?;
+        let sense = Sense::of(omega).filter(|_| !self.touches())?;
         let p = &self.settings.parameters;
         let limit = sense.of_signed(p.static_torque_nm);
         let break_theta = self.break_angle(sense, limit, &self.now, theta);

@@ -44,7 +44,7 @@ impl Reference<'_> {
         torque_before_nm: f64,
         follower: &mut F,
     ) -> ControlFlow<F::Stop> {
-        let omega = self.shaft().omega_rad_s;
+        let omega = self.now.omega_rad_s;
         let from = self.phase();
         follower.event(Event {
             kind: match from {
@@ -95,40 +95,32 @@ impl Reference<'_> {
         self.frozen.1
     }
 
-    /// Ends a slip now: in stick, or in slip of the other sense.
+    /// Ends the slip now: in stick, or in slip of the other sense.
     pub(super) fn end_slip<F: Follow>(
         &mut self,
-        slip: &Slip,
+        sense: Sense,
         follower: &mut F,
     ) -> ControlFlow<F::Stop> {
-        let p = self.settings.parameters;
-        let sense = slip.sense;
-        let shaft = self.shaft();
-        let theta = match (self.settings.convention, self.settings.restart) {
-            (Convention::Frozen, Restart::Elastic) => {
-                sense.of_signed(p.restart_torque_nm() / p.stiffness_nm_per_rad)
-            }
-            (Convention::Frozen, Restart::FromKinetic) => sense.of_signed(self.kinetic_angle_rad),
-            _ => self.met_at(slip) + sense.of_signed(self.kinetic_angle_rad),
-        };
-        let required = self.stick_torque(theta, shaft.phi_rad, &shaft);
-        let limit = p.static_torque_nm;
+        let theta = self.theta_at_end(sense);
+        let (phi_rad, omega_rad_s) = (self.now.phi_rad, self.now.omega_rad_s);
+        let required = self.stick_torque(theta, phi_rad, &self.now);
+        let limit = self.settings.parameters.static_torque_nm;
         // Stick cannot hold it, and the shaft can overtake it the other way. In
         // its own sense it cannot: the shaft has just fallen behind.
-        if required.abs() > limit + self.limit_slack_nm(&shaft)
-            && sense.of_signed(required) < 0.0
-            && self.slips(theta, shaft.phi_rad, &shaft, sense.opposite())
+        if sense.of_signed(required) < 0.0
+            && required.abs() > limit + self.limit_slack_nm(&self.now)
+            && self.slips(theta, phi_rad, &self.now, sense.opposite())
         {
-            let (state, before) = ((theta, shaft.omega_rad_s), self.slip_torque(sense));
+            let (state, before) = ((theta, omega_rad_s), self.slip_torque(sense));
             return self.begin_slip(sense.opposite(), state, before, follower);
         }
         if self.settings.convention == Convention::Frozen
             && self.touches()
-            && sense.of_signed(shaft.omega_rad_s) > 0.0
+            && sense.of_signed(omega_rad_s) > 0.0
         {
             // The stick would break where it begins, so the slip continues, and
             // nothing is felt or reported.
-            let slip = self.slip(sense, theta, shaft.omega_rad_s);
+            let slip = self.slip(sense, theta, omega_rad_s);
             self.change(State::Slip(slip));
             return ControlFlow::Continue(());
         }
@@ -138,17 +130,31 @@ impl Reference<'_> {
             from: Phase::Slip(sense),
             to: Phase::Stick,
             theta_rad: theta,
-            theta_dot_rad_s: shaft.omega_rad_s,
-            omega_rad_s: shaft.omega_rad_s,
+            theta_dot_rad_s: omega_rad_s,
+            omega_rad_s,
             torque_before_nm: self.slip_torque(sense),
             torque_after_nm: self.limited(required),
         })?;
         self.change(State::Stick {
             theta,
-            phi: shaft.phi_rad,
+            phi: phi_rad,
         });
         self.begin_repeating();
         ControlFlow::Continue(())
+    }
+
+    /// θ where the slip ends, now.
+    fn theta_at_end(&self, sense: Sense) -> f64 {
+        let p = &self.settings.parameters;
+        match (self.settings.convention, self.settings.restart, &self.state) {
+            (Convention::Frozen, Restart::Elastic, _) => {
+                sense.of_signed(p.restart_torque_nm() / p.stiffness_nm_per_rad)
+            }
+            (_, _, State::Slip(slip)) if self.settings.convention != Convention::Frozen => {
+                self.met_at(slip) + sense.of_signed(self.kinetic_angle_rad)
+            }
+            _ => sense.of_signed(self.kinetic_angle_rad),
+        }
     }
 
     /// The shaft's velocity has jumped: what sticks is torn loose, what slips
@@ -160,7 +166,7 @@ impl Reference<'_> {
         let shaft = self.shaft();
         let (theta, v, before) = match self.state {
             State::Stick { theta, phi } => {
-                let left = self.before_piece;
+                let left = self.before_piece();
                 (
                     theta + (shaft.phi_rad - phi),
                     left.omega_rad_s,

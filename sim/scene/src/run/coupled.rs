@@ -1,22 +1,29 @@
 //! A run with a plant: device → actuator → chain → boundary, tick by tick. The
 //! shaft does what comes of it.
 
-use super::device::{Device, Happened, Span, device};
+use super::any_device::{Device, Span};
+use super::command::{Command, Stage};
+use super::device::{bare_joint, bare_symptoms, device};
 use super::held_back::Beyond;
-use super::stages;
-use super::stepping::{CHECK_STEPS, PROGRESS_STEPS};
+use super::reached::Reached;
+use super::recorder::Happened;
+use super::stepping::{CHECK_STEPS, PROGRESS_STEPS, next_stop};
 use super::tally::TorqueTally;
 use super::watch::{Ended, Stopped, Watch};
 use super::{Diverged, RunError, Totals, steps};
 use crate::any_joint::Precise;
 use crate::scene::Scene;
 use crate::walk::{Cut, Walk};
-use crepitus_model::render::effects::{EffectSpec, SPECS};
 use crepitus_model::solver::Solver;
+use crepitus_plant::Motion;
+use crepitus_plant::actuator::Ideal;
+use crepitus_plant::assembly::PlantVisitor;
 use crepitus_plant::boundary::MotionStep;
 use crepitus_plant::chain::{Body, Impacts};
 use crepitus_plant::energy_balance::EnergyBalance;
-use crepitus_plant::{Motion, Plant};
+use crepitus_plant::mechanics::{Driven, Mechanics};
+use crepitus_plant::rigid_shaft::RigidShaft;
+use std::marker::PhantomData;
 
 /// The totals of a plant.
 pub(super) struct PlantTotals {
@@ -53,55 +60,75 @@ pub const FELT_COLUMN: &str = "hand_torque_nm";
 /// tick, which [`FELT_COLUMN`] leaves out: a plant that can have impacts has it.
 pub const STRUCK_COLUMN: &str = "hand_impact_nms";
 
-/// An effect of the device, its present torque, and its work.
-struct Stage {
-    spec: &'static EffectSpec,
-    /// Place of the effect in the model's table.
-    place: usize,
-    /// True if its contribution is part of the motor's torque.
-    acts_on_joint: bool,
-    added_nm: f64,
-    work_j: f64,
-}
-
 /// Runs a scene with a plant.
 pub(super) fn simulate<F: Precise>(
     scene: &Scene,
     solver: Solver,
     watch: &mut dyn Watch,
 ) -> Result<Totals, Ended> {
-    let tick_s = scene.step_s();
-    let plant = scene.assemble()?;
-    let shaft = plant.shaft();
-    let settings = scene.effect_settings();
-    let run = Run {
-        has_tank: scene.gives_energy(),
-        first_felt_nm: first_felt_nm(scene)?,
-        device: device::<F>(scene, solver, tick_s, &shaft)?,
-        plant,
-        stages: stages::listed(scene)
-            .map(|spec| {
-                let place = SPECS.iter().take_while(|s| s.name != spec.name).count();
-                Stage {
-                    spec,
-                    place,
-                    acts_on_joint: settings.acts_on_joint(place),
-                    added_nm: 0.0,
-                    work_j: 0.0,
-                }
-            })
-            .collect(),
-        tick_s,
-        coil_v: 0.0,
-        splits: !scene.is_device && scene.encoder.is_none(),
-        cuts: Vec::new(),
-    };
-    run.go::<F>(scene, watch)
+    scene.compose(Coupling::<F> {
+        scene,
+        solver,
+        watch,
+        precision: PhantomData,
+    })?
 }
 
-struct Run {
-    device: Box<dyn Device>,
-    plant: Plant,
+/// Couples a device to whatever plant the scene calls for.
+struct Coupling<'a, F> {
+    scene: &'a Scene,
+    solver: Solver,
+    watch: &'a mut dyn Watch,
+    precision: PhantomData<F>,
+}
+
+impl<F: Precise> Coupling<'_, F> {
+    /// Runs this device on this plant.
+    fn run<M: Driven, D: Device>(self, plant: M, device: D) -> Result<Totals, Ended> {
+        let scene = self.scene;
+        let tick_s = scene.step_s();
+        let part_s = tick_s / f64::from(scene.substeps);
+        let run = Run {
+            has_tank: scene.gives_energy(),
+            first_felt_nm: first_felt_nm(scene)?,
+            device,
+            plant,
+            stages: Stage::listed(scene),
+            tick_s,
+            coil_v: 0.0,
+            splits: !scene.is_device && scene.encoder.is_none(),
+            cuts: Vec::new(),
+        };
+        let walk = Walk::new(&scene.motion, part_s).in_parts::<F>();
+        run.go(scene, walk, self.watch)
+    }
+}
+
+impl<F: Precise> PlantVisitor for Coupling<'_, F> {
+    type Output = Result<Totals, Ended>;
+
+    fn visit<M: Driven>(self, plant: M) -> Self::Output {
+        let (scene, solver, step_s) = (self.scene, self.solver, self.scene.step_s());
+        if let Some(device) = bare_joint::<F>(scene, solver, step_s, &plant.shaft())? {
+            self.run(plant, device)
+        } else {
+            let device = device::<F>(scene, solver, step_s, &plant.shaft())?;
+            self.run(plant, device)
+        }
+    }
+
+    fn visit_rigid(self, plant: RigidShaft<Ideal>) -> Self::Output {
+        let scene = self.scene;
+        match bare_symptoms::<F>(scene, scene.step_s(), &plant.shaft())? {
+            Some(device) => self.run(plant, device),
+            None => self.visit(plant),
+        }
+    }
+}
+
+struct Run<M, D> {
+    device: D,
+    plant: M,
     stages: Vec<Stage>,
     tick_s: f64,
     /// Voltage for the coil, which its PWM loads with the next tick.
@@ -120,7 +147,7 @@ struct Run {
 /// root of the largest number in single precision.
 const FASTEST: f64 = 1e15;
 
-impl Run {
+impl<M: Driven, D: Device> Run<M, D> {
     /// Returns whether a state is NaN, infinite, or soon will be, and which: a shaft that is not finite makes
     /// an object so, and one whose square overflows makes the plant's other states so.
     fn diverged(&self, scene: &Scene, by_s: f64) -> Option<Diverged> {
@@ -146,113 +173,176 @@ impl Run {
         })
     }
 
-    fn go<F: Precise>(mut self, scene: &Scene, watch: &mut dyn Watch) -> Result<Totals, Ended> {
+    fn go(
+        mut self,
+        scene: &Scene,
+        mut walk: Walk<&Motion>,
+        watch: &mut dyn Watch,
+    ) -> Result<Totals, Ended> {
         let (steps, every) = steps(scene);
-        let wants_rows = watch.wants_rows();
+        let every = watch.wants_rows().then_some(every);
         let parts = scene.substeps;
-        let mut walk = Walk::new(&scene.motion, self.tick_s / f64::from(parts)).in_parts::<F>();
-        let is_felt = scene.is_held();
-        let mut felt = TorqueTally::default();
-        let mut felt_nm = self.first_felt_nm;
-        let has_impacts = self.plant.impacts().is_some();
-        let (mut struck_nms, mut most_struck_nms) = (0.0, 0.0_f64);
-        let (mut held, mut limited) = (0.0, 0.0);
-        let mut beyond = Beyond::new();
-        let mut fastest_rad_s: f64 = 0.0;
+        let mut at = Reached {
+            n: 0,
+            time_s: 0.0,
+            tick_s: self.tick_s,
+            shaft: self.plant.shaft(),
+            command: self.device.command(&mut self.stages),
+            felt_nm: self.first_felt_nm,
+            struck_nms: 0.0,
+            felt: TorqueTally::default(),
+            most_struck_nms: 0.0,
+            held_j: 0.0,
+            limited_j: 0.0,
+            beyond: Beyond::new(),
+            fastest_rad_s: 0.0,
+        };
         let mut row = Vec::new();
         let mut events = Vec::new();
-        let mut n = 0;
-        let mut time_s = 0.0;
+        let mut stop = 0;
         loop {
-            let before = self.plant.shaft();
-            fastest_rad_s = fastest_rad_s.max(before.omega_rad_s.abs());
-            let is_row = wants_rows && n % every == 0;
-            // Before its row: a trace holds numbers.
-            if (is_row || n % CHECK_STEPS == 0 || n == steps)
-                && let Some(diverged) = self.diverged(scene, time_s)
-            {
-                return Err(RunError::Diverged(diverged));
+            if M::IS_RIGID && parts == 1 {
+                let (stages, events) = (&mut self.stages, &mut events);
+                self.device
+                    .go_ahead(&mut self.plant, &mut walk, &mut at, stop, stages, events);
             }
-            if is_row {
-                row.clear();
-                row.extend([time_s, before.angle_rad, before.omega_rad_s]);
-                self.write(scene, &mut row);
-                if is_felt {
-                    row.push(felt_nm);
-                    if has_impacts {
-                        row.push(struck_nms);
+            if events.is_empty() {
+                at.note_speed(at.shaft.omega_rad_s);
+                if at.n == stop {
+                    self.stop(scene, &at, (steps, every), &mut row, watch)?;
+                    if at.n == steps {
+                        break;
+                    }
+                    stop = next_stop(at.n, steps, every);
+                    if M::IS_RIGID {
+                        continue;
                     }
                 }
-                watch.row(&row)?;
+                self.tick(&mut at, &mut walk, parts, &mut events);
             }
-            if n % PROGRESS_STEPS == 0 {
-                watch.progress(time_s)?;
+            if !events.is_empty() {
+                // As a row, an event holds numbers.
+                if let Some(diverged) = self.diverged(scene, at.time_s) {
+                    return Err(RunError::Diverged(diverged));
+                }
+                tell(&mut events, watch)?;
             }
-            if n == steps {
-                break;
-            }
-            n += 1;
-            let (model_nm, taken_nm) = self.command();
-            let felt_before = self.plant.felt_nms();
-            let struck_before = self.plant.struck_nms();
-            let after = self.advance(&mut walk, parts);
-            struck_nms = self.plant.struck_nms() - struck_before;
-            most_struck_nms = most_struck_nms.max(struck_nms.abs());
-            felt_nm = (self.plant.felt_nms() - felt_before - struck_nms) / self.tick_s;
-            felt.add(felt_nm);
-            let turned = after.angle_rad - before.angle_rad;
-            held += model_nm * turned;
-            limited += taken_nm * turned;
-            for stage in &mut self.stages {
-                stage.work_j += stage.added_nm * turned;
-            }
-            self.render(time_s, (before, after), &mut events);
-            // As a row, an event holds numbers.
-            if !events.is_empty()
-                && let Some(diverged) = self.diverged(scene, time_s)
-            {
-                return Err(RunError::Diverged(diverged));
-            }
-            tell(&mut events, watch)?;
-            time_s = walk.time_s();
-            beyond.note(self.device.asked_nm(), (time_s, self.tick_s));
+            at.end_tick(walk.time_s());
         }
+        let time_s = at.time_s;
         let tank = self.device.tank();
-        let (tally, crowded_steps) = self.device.finish(time_s).unzip();
+        let (tally, crowded_steps) = Box::new(self.device).finish(time_s).unzip();
         Ok(Totals {
             steps,
             end_s: time_s,
             tally,
-            fastest_rad_s,
+            fastest_rad_s: at.fastest_rad_s,
             crowded_steps: crowded_steps.unwrap_or(0),
             tank,
-            beyond,
+            beyond: at.beyond,
             plant: Some(PlantTotals {
                 balance: self.plant.balance(),
                 rendering: Rendering {
-                    held,
+                    held: at.held_j,
                     stages: self
                         .stages
                         .iter()
                         .filter(|stage| stage.acts_on_joint)
                         .map(|s| (s.spec.name, s.work_j))
                         .collect(),
-                    limits: scene.is_device.then_some(limited),
+                    limits: scene.is_device.then_some(at.limited_j),
                     absorbed: self.plant.absorbed_j(),
                 },
-                felt: is_felt.then_some(felt),
+                felt: scene.is_held().then_some(at.felt),
                 impacts: self.plant.impacts(),
-                struck_nms: most_struck_nms,
+                struck_nms: at.most_struck_nms,
                 warnings: self.plant.warnings(),
             }),
         })
     }
 
-    /// One tick of the device, in which the shaft has gone from one state to the next.
-    fn render(&mut self, start_s: f64, (from, to): (Body, Body), events: &mut Vec<Happened>) {
+    /// A tick of the mechanics and of the device.
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "the loop's own, with nothing but the loop around it"
+    )]
+    fn tick(
+        &mut self,
+        at: &mut Reached,
+        walk: &mut Walk<&Motion>,
+        parts: u32,
+        events: &mut Vec<Happened>,
+    ) {
+        at.n += 1;
+        let before = at.shaft;
+        self.plant.command(at.command.torque_nm, self.coil_v);
+        self.coil_v = at.command.coil_v;
+        let felt_before = self.plant.felt_nms();
+        let struck_before = self.plant.struck_nms();
+        let (after, next) = self.advance(walk, parts, before);
+        at.shaft = next;
+        let mut felt_nms = self.plant.felt_nms() - felt_before;
+        if !M::IS_RIGID {
+            at.struck_nms = self.plant.struck_nms() - struck_before;
+            felt_nms -= at.struck_nms;
+            if at.struck_nms.abs() > at.most_struck_nms {
+                at.most_struck_nms = at.struck_nms.abs();
+            }
+        }
+        let turned_rad = after.angle_rad - before.angle_rad;
+        at.note_motion(felt_nms, turned_rad);
+        at.limited_j += at.command.taken_nm * turned_rad;
+        at.command = self.render(at.time_s, (before, after), events);
+    }
+
+    /// Work before some ticks only: the state is checked, its row is written, and progress
+    /// told of.
+    #[cold]
+    fn stop(
+        &self,
+        scene: &Scene,
+        at: &Reached,
+        (steps, every): (u64, Option<u64>),
+        row: &mut Vec<f64>,
+        watch: &mut dyn Watch,
+    ) -> Result<(), Ended> {
+        let is_row = every.is_some_and(|every| at.n.is_multiple_of(every));
+        // Before its row: a trace holds numbers.
+        if (is_row || at.n.is_multiple_of(CHECK_STEPS) || at.n == steps)
+            && let Some(diverged) = self.diverged(scene, at.time_s)
+        {
+            return Err(RunError::Diverged(diverged));
+        }
+        if is_row {
+            let shaft = self.plant.shaft();
+            row.clear();
+            row.extend([at.time_s, shaft.angle_rad, shaft.omega_rad_s]);
+            self.write(scene, row);
+            if scene.is_held() {
+                row.push(at.felt_nm);
+                row.extend(self.plant.impacts().map(|_| at.struck_nms));
+            }
+            watch.row(row)?;
+        }
+        if at.n.is_multiple_of(PROGRESS_STEPS) {
+            watch.progress(at.time_s)?;
+        }
+        Ok(())
+    }
+
+    /// One tick of the device, in which the shaft has gone from one state to the next: its next
+    /// command.
+    #[inline]
+    fn render(
+        &mut self,
+        start_s: f64,
+        (from, to): (Body, Body),
+        events: &mut Vec<Happened>,
+    ) -> Command {
+        let stages = &mut self.stages;
         if self.cuts.is_empty() {
-            self.device.tick(start_s, &from, &to, events);
-            return;
+            return self.device.tick(start_s, (&from, &to), stages, events);
         }
         let span = Span {
             start_s,
@@ -260,7 +350,9 @@ impl Run {
             from,
             to,
         };
-        self.device.tick_in_parts(&span, &self.cuts, events);
+        let command = self.device.tick_in_parts(&span, &self.cuts, stages, events);
+        self.cuts.clear();
+        command
     }
 
     /// Writes the columns of the device and of the plant.
@@ -281,29 +373,11 @@ impl Run {
         self.plant.write(row);
     }
 
-    /// Commands what the device shows in the next tick. The joint's torque, and
-    /// what guards and limits add to it, N·m.
+    /// The plant through one tick; the shaft at its end, before and after a jump there.
     #[inline]
-    fn command(&mut self) -> (f64, f64) {
-        let shown = self.device.shown();
-        let mut all_nm = 0.0;
-        for stage in self.stages.iter_mut().filter(|stage| stage.acts_on_joint) {
-            stage.added_nm = shown.added.get(stage.place).unwrap_or(0.0);
-            all_nm += stage.added_nm;
-        }
-        self.plant.command(shown.torque_nm, self.coil_v);
-        self.coil_v = shown.coil_v;
-        let joint_nm = shown.model_torque_nm - shown.added.symptoms_nm();
-        let taken_nm = shown.torque_nm - joint_nm - all_nm;
-        (joint_nm, taken_nm)
-    }
-
-    /// The plant through one tick; the shaft at its end, before a jump there.
-    #[inline]
-    fn advance(&mut self, walk: &mut Walk<&Motion>, parts: u32) -> Body {
-        let mut shaft = self.plant.shaft();
+    fn advance(&mut self, walk: &mut Walk<&Motion>, parts: u32, from: Body) -> (Body, Body) {
+        let mut shaft = (from, from);
         if self.splits {
-            self.cuts.clear();
             for _ in 0..parts {
                 shaft = walk.advance_in_parts(&mut self.plant, &mut self.cuts);
             }
@@ -317,6 +391,7 @@ impl Run {
 }
 
 /// Passes the events of a tick on, in the order of time.
+#[cold]
 fn tell(events: &mut Vec<Happened>, watch: &mut dyn Watch) -> Result<(), Stopped> {
     events.sort_by(|a, b| a.time_s().total_cmp(&b.time_s()));
     for event in events.drain(..) {
@@ -343,3 +418,6 @@ fn first_felt_nm(scene: &Scene) -> Result<f64, crepitus_model::SettingsError> {
     });
     Ok((plant.felt_nms() - plant.struck_nms()) / tick_s)
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,24 +1,31 @@
 //! The device of a coupled run: sensor and pipeline, one tick at a time, behind
 //! one call, so that the loop around them is the same for all.
 
-use super::held_back::{TankAccounting, TankTotals};
+use super::any_device::{Device, Span};
+use super::command::{Command, Stage};
+use super::held_back::TankTotals;
+use super::reached::Reached;
+use super::recorder::{Happened, Heard, Recorder};
 use super::sensor::{Encoded, Ideal, Sensor};
-use super::stages::{self, HasJoint, Notice, Rendering, Retiming};
+use super::stages::{self, BareStages, HasJoint, Rendering, Retiming};
 use super::stepping::StepAccounting;
 use super::tally::Tally;
+use super::watching::Watching;
 use crate::any_joint::{AnyJoint, Precise};
 use crate::scene::Scene;
-use crate::trace::{Column, ColumnKind, EventRecord, SymptomEvent};
-use crate::walk::Cut;
+use crate::trace::{Column, ColumnKind};
+use crate::walk::{Cut, Walk};
 use crepitus_model::joint::shaft::Linear;
-use crepitus_model::render::effects::EffectSpec;
-use crepitus_model::render::input_check::Sample;
+use crepitus_model::render::input_check::{Checked, Sample};
+use crepitus_model::render::position::Travel;
 use crepitus_model::render::{Bare, ShaftEstimate, Shown};
 use crepitus_model::solver::locate::Locate;
 use crepitus_model::solver::{LocatorVisitor, Solver, with_frozen_locator};
-use crepitus_model::{Real, Settings, SettingsError, StickSlip, Validated};
+use crepitus_model::{Real, Settings, SettingsError, ShaftStep, StickSlip, Validated};
+use crepitus_plant::Motion;
+use crepitus_plant::boundary::MotionStep;
 use crepitus_plant::chain::Body;
-use std::cell::RefCell;
+use crepitus_plant::mechanics::Driven;
 
 /// Output of a scene's device: the commanded torque, and the
 /// number of the [limit](crepitus_model::render::Limit) that held it back.
@@ -32,144 +39,6 @@ pub(super) const COLUMNS: [Column; 2] = [
         kind: ColumnKind::Whole,
     },
 ];
-
-/// An event of a tick.
-pub(super) enum Happened {
-    Joint(EventRecord),
-    Symptom(SymptomEvent),
-}
-
-impl Happened {
-    pub(super) fn time_s(&self) -> f64 {
-        match self {
-            Self::Joint(event) => event.time_s,
-            Self::Symptom(event) => event.time_s,
-        }
-    }
-}
-
-/// Puts the events of symptoms on record, and what the tank pays of them.
-struct Recorder {
-    step_s: f64,
-    play_events: bool,
-    tank: TankAccounting,
-}
-
-impl Recorder {
-    fn new(scene: &Scene) -> Self {
-        Self {
-            step_s: scene.step_s(),
-            play_events: scene.play_events,
-            tank: TankAccounting::default(),
-        }
-    }
-
-    fn note<F: Real>(
-        &mut self,
-        (start_s, from, to): (f64, &Body, &Body),
-        effect: &'static EffectSpec,
-        notice: &Notice<F>,
-        events: &mut Vec<Happened>,
-    ) {
-        let change = match notice {
-            Notice::Change(change) => change,
-            Notice::Paid { asked_nm, paid_nm } => {
-                let paid = (asked_nm.to_f64(), paid_nm.to_f64());
-                let tick = (start_s + self.step_s, self.step_s);
-                if let Some(ended) = self.tank.paid(effect.name, paid, tick) {
-                    events.push(Happened::Symptom(SymptomEvent {
-                        time_s: tick.0,
-                        effect: effect.name,
-                        word: ended.word,
-                        angle_rad: to.angle_rad,
-                        omega_rad_s: to.omega_rad_s,
-                        torque_before_nm: ended.asked_nm,
-                        torque_after_nm: ended.paid_nm,
-                    }));
-                }
-                return;
-            }
-        };
-        if change.word.is_of_play() && !self.play_events {
-            return;
-        }
-        let fraction = change.fraction.to_f64();
-        let faster = to.omega_rad_s - from.omega_rad_s;
-        let bend_rad = 0.5 * faster * self.step_s;
-        let travel_rad = to.angle_rad - from.angle_rad;
-        events.push(Happened::Symptom(SymptomEvent {
-            time_s: start_s + fraction * self.step_s,
-            effect: effect.name,
-            word: change.word,
-            angle_rad: from.angle_rad + fraction * (travel_rad - bend_rad * (1.0 - fraction)),
-            omega_rad_s: from.omega_rad_s + faster * fraction,
-            torque_before_nm: change.before_nm.to_f64(),
-            torque_after_nm: change.after_nm.to_f64(),
-        }));
-    }
-}
-
-/// A tick, or a part of one, and what the shaft does in it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Span {
-    pub(super) start_s: f64,
-    pub(super) length_s: f64,
-    pub(super) from: Body,
-    pub(super) to: Body,
-}
-
-impl Span {
-    /// Parts of the span, between breaks of the motion; one at its start only tells what it starts
-    /// with.
-    fn parts(&self, cuts: &[Cut]) -> Vec<Self> {
-        let mut parts = Vec::with_capacity(cuts.len() + 1);
-        let mut rest = *self;
-        for cut in cuts {
-            let length_s = cut.time_s - rest.start_s;
-            if length_s > 0.0 {
-                parts.push(Self {
-                    length_s,
-                    to: cut.before,
-                    ..rest
-                });
-            }
-            rest.start_s = cut.time_s;
-            rest.length_s -= length_s;
-            rest.from = cut.after;
-        }
-        parts.push(rest);
-        parts
-    }
-}
-
-/// The device's renderer, on the shaft as measured.
-pub(super) trait Device {
-    /// Output from now to the end of the next tick.
-    fn shown(&self) -> Shown<f64>;
-
-    /// One tick, which began at `start_s` and in which the shaft moved so. What
-    /// happens is added to `events`, of each effect in the order of time.
-    fn tick(&mut self, start_s: f64, from: &Body, to: &Body, events: &mut Vec<Happened>);
-
-    /// One tick of a bare solver, in the parts that the motion breaks it into.
-    fn tick_in_parts(&mut self, tick: &Span, cuts: &[Cut], events: &mut Vec<Happened>);
-
-    /// Writes its columns.
-    fn write(&self, row: &mut Vec<f64>);
-
-    /// Torque before the limits of a device, N·m; without one that which is shown.
-    fn asked_nm(&self) -> f64;
-
-    /// Account of what the tank held back so far.
-    fn tank(&self) -> TankTotals;
-
-    /// Returns whether its state is still numbers.
-    fn is_finite(&self) -> bool;
-
-    /// Completes the energy balance of the object, if there is one, and returns in how many
-    /// steps it had as many events as a step may have.
-    fn finish(self: Box<Self>, time_s: f64) -> Option<(Tally, u64)>;
-}
 
 /// The device that a scene calls for, on a shaft that begins like this.
 pub(super) fn device<F: Precise>(
@@ -199,21 +68,14 @@ fn with_sensor<F: Precise, S: Sensor<F> + 'static>(
     sensor: S,
 ) -> Result<Box<dyn Device>, SettingsError> {
     let Some(crepitus) = &scene.crepitus else {
-        return if scene.is_device {
-            Ok(watching(
-                scene,
-                shaft,
-                sensor,
-                stages::drive(scene, step_s, ())?,
-            ))
+        let device: Box<dyn Device> = if scene.is_device {
+            let stages = stages::drive(scene, step_s, ())?;
+            Box::new(watching::<F, _, _>(scene, shaft, sensor, stages))
         } else {
-            Ok(watching(
-                scene,
-                shaft,
-                sensor,
-                stages::bare(scene, step_s, ())?,
-            ))
+            let stages = stages::bare(scene, step_s, ())?;
+            Box::new(watching::<F, _, _>(scene, shaft, sensor, stages))
         };
+        return Ok(device);
     };
     let maker = Maker {
         scene,
@@ -226,26 +88,66 @@ fn with_sensor<F: Precise, S: Sensor<F> + 'static>(
         let omega = F::from_f64(shaft.omega_rad_s);
         let joint = AnyJoint::new(&crepitus.settings, solver, step_s, omega)?;
         let stages = stages::bare(scene, step_s, Bare(joint))?;
-        return Ok(maker.joined(stages));
+        return Ok(Box::new(maker.joined(stages)));
     }
     with_frozen_locator::<F, _>(solver, maker)
 }
 
-/// A device that only looks.
-fn watching<F: Real, P: Rendering<F> + 'static, S: Sensor<F> + 'static>(
+/// A bare solver on a shaft that it sees as it is.
+pub(super) type BareJoint<F> = Joined<F, BareStages<F, Bare<AnyJoint<F>>>, Ideal>;
+
+/// The device of a scene that has a joint alone, without a sensor; `None` if it is another one.
+pub(super) fn bare_joint<F: Precise>(
+    scene: &Scene,
+    solver: Solver,
+    step_s: f64,
+    shaft: &Body,
+) -> Result<Option<BareJoint<F>>, SettingsError> {
+    let Some(crepitus) = &scene.crepitus else {
+        return Ok(None);
+    };
+    if scene.is_device || scene.encoder.is_some() {
+        return Ok(None);
+    }
+    let omega = F::from_f64(shaft.omega_rad_s);
+    let joint = AnyJoint::new(&crepitus.settings, solver, step_s, omega)?;
+    let stages = stages::bare(scene, step_s, Bare(joint))?;
+    let maker = Maker {
+        scene,
+        settings: crepitus.settings,
+        step_s,
+        shaft: *shaft,
+        sensor: Ideal,
+    };
+    Ok(Some(maker.joined(stages)))
+}
+
+/// Symptoms without a joint, on a shaft that they see as it is.
+pub(super) type BareSymptoms<F> = Watching<F, BareStages<F, ()>, Ideal>;
+
+/// The device of a scene that has symptoms alone, without a joint or a sensor; `None` if it is
+/// another one.
+pub(super) fn bare_symptoms<F: Real>(
+    scene: &Scene,
+    step_s: f64,
+    shaft: &Body,
+) -> Result<Option<BareSymptoms<F>>, SettingsError> {
+    if scene.is_device || scene.encoder.is_some() || scene.crepitus.is_some() {
+        return Ok(None);
+    }
+    let stages = stages::bare(scene, step_s, ())?;
+    Ok(Some(watching(scene, shaft, Ideal, stages)))
+}
+
+/// Symptoms that look at what they see as it begins.
+fn watching<F: Real, P: Rendering<F>, S: Sensor<F>>(
     scene: &Scene,
     shaft: &Body,
     sensor: S,
     mut stages: P,
-) -> Box<dyn Device> {
+) -> Watching<F, P, S> {
     let shown = first(scene, &mut stages, F::ZERO, (shaft, &sensor));
-    Box::new(Watching {
-        stages,
-        sensor,
-        recorder: Recorder::new(scene),
-        retiming: Retiming::new(scene, scene.step_s()),
-        shown,
-    })
+    Watching::new(scene, sensor, stages, shown)
 }
 
 /// Boxes whatever joint the scene calls for.
@@ -264,12 +166,12 @@ impl<F: Real, S: Sensor<F> + 'static> LocatorVisitor<F> for Maker<'_, S> {
     fn visit<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
         let joint = stages::crepitus::<F, L>(self.scene, &self.settings, self.step_s)?;
         let stages = stages::drive(self.scene, self.step_s, joint)?;
-        Ok(self.joined(stages))
+        Ok(Box::new(self.joined(stages)))
     }
 }
 
 impl<S: 'static> Maker<'_, S> {
-    fn joined<F: Real, P: HasJoint<F> + 'static>(self, mut stages: P) -> Box<dyn Device>
+    fn joined<F: Real, P: HasJoint<F> + 'static>(self, mut stages: P) -> Joined<F, P, S>
     where
         S: Sensor<F>,
     {
@@ -279,14 +181,15 @@ impl<S: 'static> Maker<'_, S> {
         accounting.tally.shown(torque_nm.to_f64());
         let start = (&self.shaft, &self.sensor);
         let shown = first::<F>(self.scene, &mut stages, torque_nm, start);
-        Box::new(Joined {
+        Joined {
             stages,
             sensor: self.sensor,
             recorder: Recorder::new(self.scene),
             retiming: Retiming::new(self.scene, self.step_s),
             accounting,
+            heard: Heard::new(),
             shown,
-        })
+        }
     }
 }
 
@@ -318,13 +221,30 @@ fn first<F: Real>(
 }
 
 /// A device with a joint.
-struct Joined<F, P, S> {
+pub(super) struct Joined<F, P, S> {
     stages: P,
     sensor: S,
     recorder: Recorder,
     retiming: Retiming,
     accounting: StepAccounting,
+    heard: Heard<F>,
     shown: Shown<F>,
+}
+
+/// Puts on record what was heard in a tick, or in a part of one.
+#[cold]
+fn report<F: Real>(
+    (accounting, recorder): (&mut StepAccounting, &mut Recorder),
+    heard: &mut Heard<F>,
+    (start_s, seen): (f64, &ShaftStep<F>),
+    shaft: (&Body, &Body),
+    events: &mut Vec<Happened>,
+) {
+    for event in heard.events.drain(..) {
+        let event = accounting.event(start_s, seen, &event);
+        events.push(Happened::Joint(event));
+    }
+    recorder.note_all((start_s, shaft), heard, events);
 }
 
 impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
@@ -332,75 +252,169 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
         self.shown.to_f64()
     }
 
-    fn asked_nm(&self) -> f64 {
-        let asked_nm = self.stages.asked_nm();
-        asked_nm.unwrap_or(self.shown.torque_nm).to_f64()
+    fn command(&self, stages: &mut [Stage]) -> Command {
+        Command::of(&self.shown, self.stages.asked_nm(), 0.0, stages)
     }
 
     fn tank(&self) -> TankTotals {
-        self.recorder.tank.totals()
+        self.recorder.tank()
     }
 
-    fn tick(&mut self, start_s: f64, from: &Body, to: &Body, events: &mut Vec<Happened>) {
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call of the loop, whose arguments and results would pass through memory"
+    )]
+    fn tick(
+        &mut self,
+        start_s: f64,
+        (from, to): (&Body, &Body),
+        stages: &mut [Stage],
+        events: &mut Vec<Happened>,
+    ) -> Command {
         let seen = self.sensor.see(from, to);
-        let (accounting, recorder) = (&mut self.accounting, &mut self.recorder);
-        let events = RefCell::new(events);
-        self.shown = self.stages.tick(
+        self.stages.tick(
             &ShaftEstimate::taken(&seen, self.sensor.place(to)),
-            &mut |event| {
-                let event = accounting.event(start_s, &seen, &event);
-                events.borrow_mut().push(Happened::Joint(event));
-            },
-            &mut |effect, notice| {
-                let events = &mut events.borrow_mut();
-                recorder.note((start_s, from, to), effect, &notice, events);
-            },
+            &mut self.shown,
+            &mut self.heard,
         );
+        if !self.heard.is_empty() {
+            let records = (&mut self.accounting, &mut self.recorder);
+            report(
+                records,
+                &mut self.heard,
+                (start_s, &seen),
+                (from, to),
+                events,
+            );
+        }
         let joint = self.stages.joint();
-        if let Some(held_nm) = self.stages.held_nm() {
+        if !P::REFUSES {
+            self.accounting.end_step(&seen, joint);
+        } else if let Some(held_nm) = self.stages.held_nm() {
             let held_nm = held_nm.to_f64();
             self.accounting.hold(&seen, start_s, joint, held_nm);
         } else {
             let restarts = self.stages.restarts();
             self.accounting.end_tick(&seen, start_s, joint, restarts);
         }
+        let turned_rad = to.angle_rad - from.angle_rad;
+        Command::of(&self.shown, self.stages.asked_nm(), turned_rad, stages)
     }
 
-    fn tick_in_parts(&mut self, tick: &Span, cuts: &[Cut], events: &mut Vec<Happened>) {
+    #[inline(never)]
+    fn go_ahead<M: Driven>(
+        &mut self,
+        plant: &mut M,
+        walk: &mut Walk<&Motion>,
+        at: &mut Reached,
+        until: u64,
+        stages: &mut [Stage],
+        events: &mut Vec<Happened>,
+    ) {
+        let Some((joint, effects)) = self.stages.in_turn() else {
+            return;
+        };
+        if !(M::IS_RIGID && stages.is_sorted_by_key(|stage| stage.place)) {
+            return;
+        }
+        let scale = effects.scale;
+        let mut torque_nm = None;
+        while at.n < until {
+            let Some((from, to)) = walk.step_within() else {
+                break;
+            };
+            at.note_speed(from.omega_rad_s);
+            at.n += 1;
+            plant.command(at.command.torque_nm, 0.0);
+            let felt_before = plant.felt_nms();
+            plant.advance(&MotionStep {
+                length_s: at.tick_s,
+                from,
+                to,
+            });
+            let turned_rad = to.angle_rad - from.angle_rad;
+            at.note_motion(plant.felt_nms() - felt_before, turned_rad);
+            let seen = self.sensor.see(&from, &to);
+            joint.step(&seen, |event| self.heard.events.push(event));
+            let mut all_nm = joint.torque_nm();
+            let mut symptoms_nm = 0.0;
+            if !stages.is_empty() {
+                let place = self.sensor.place(&to);
+                let travel = Travel::plausible(&Checked::Step(seen), &place, &scale);
+                for stage in &mut *stages {
+                    let added = &mut self.shown.added;
+                    let nm = effects.follow(stage.place, travel.as_ref(), added, &mut self.heard);
+                    all_nm += nm;
+                    symptoms_nm += nm.to_f64();
+                    stage.goes_on(nm.to_f64(), turned_rad);
+                }
+            }
+            torque_nm = Some(all_nm);
+            at.command.goes_on(all_nm.to_f64(), symptoms_nm);
+            let is_quiet = self.heard.is_empty() || {
+                let records = (&mut self.accounting, &mut self.recorder);
+                let start = (at.time_s, &seen);
+                report(records, &mut self.heard, start, (&from, &to), events);
+                events.is_empty()
+            };
+            self.accounting.end_step(&seen, &*joint);
+            if !is_quiet {
+                break;
+            }
+            at.end_tick(walk.time_s());
+        }
+        if let Some(torque_nm) = torque_nm {
+            at.shaft = plant.shaft();
+            self.shown = Shown {
+                torque_nm,
+                model_torque_nm: torque_nm,
+                added: self.shown.added,
+                phases: effects.phases(),
+                phase: joint.phase(),
+                ..Shown::nothing()
+            };
+        }
+    }
+
+    #[cold]
+    fn tick_in_parts(
+        &mut self,
+        tick: &Span,
+        cuts: &[Cut],
+        stages: &mut [Stage],
+        events: &mut Vec<Happened>,
+    ) -> Command {
         let parts = tick.parts(cuts);
-        let (accounting, events) = (&mut self.accounting, RefCell::new(events));
-        let recorder = &mut self.recorder;
         let mut jump_nm = F::ZERO;
         for (left, part) in (0..parts.len()).rev().zip(&parts) {
             let Span { from, to, .. } = part;
             let seen = self.sensor.see(from, to);
-            recorder.step_s = part.length_s;
-            accounting.step_s = part.length_s;
+            self.recorder.step_s = part.length_s;
+            self.accounting.step_s = part.length_s;
             self.retiming.ticks_of(part.length_s);
             let is_last = left == 0;
             self.shown = self.stages.tick_part(
                 &ShaftEstimate::taken(&seen, self.sensor.place(to)),
                 (&self.retiming, is_last, jump_nm),
-                &mut |event| {
-                    let event = accounting.event(part.start_s, &seen, &event);
-                    events.borrow_mut().push(Happened::Joint(event));
-                },
-                &mut |effect, notice| {
-                    let events = &mut events.borrow_mut();
-                    recorder.note((part.start_s, from, to), effect, &notice, events);
-                },
+                &mut self.heard,
             );
+            let records = (&mut self.accounting, &mut self.recorder);
+            let start = (part.start_s, &seen);
+            report(records, &mut self.heard, start, (from, to), events);
             jump_nm = self.shown.jump_nm;
             if is_last {
-                accounting.end_step(&seen, self.stages.joint());
+                self.accounting.end_step(&seen, self.stages.joint());
             } else {
-                accounting.end_part(&seen, self.stages.joint());
+                self.accounting.end_part(&seen, self.stages.joint());
             }
         }
-        accounting.step_s = tick.length_s;
-        recorder.step_s = tick.length_s;
+        self.accounting.step_s = tick.length_s;
+        self.recorder.step_s = tick.length_s;
         self.retiming.ticks_of(tick.length_s);
         self.stages.retime(&self.retiming);
+        let turned_rad = tick.to.angle_rad - tick.from.angle_rad;
+        Command::of(&self.shown, self.stages.asked_nm(), turned_rad, stages)
     }
 
     fn write(&self, row: &mut Vec<f64>) {
@@ -423,75 +437,5 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
         self.accounting.finish(time_s, self.stages.joint());
         let crowded = self.accounting.crowded_steps;
         Some((self.accounting.tally, crowded))
-    }
-}
-
-/// A device that only looks.
-struct Watching<F, P, S> {
-    stages: P,
-    sensor: S,
-    recorder: Recorder,
-    retiming: Retiming,
-    shown: Shown<F>,
-}
-
-impl<F: Real, P: Rendering<F>, S: Sensor<F>> Device for Watching<F, P, S> {
-    fn shown(&self) -> Shown<f64> {
-        self.shown.to_f64()
-    }
-
-    fn asked_nm(&self) -> f64 {
-        let asked_nm = self.stages.asked_nm();
-        asked_nm.unwrap_or(self.shown.torque_nm).to_f64()
-    }
-
-    fn tank(&self) -> TankTotals {
-        self.recorder.tank.totals()
-    }
-
-    fn tick(&mut self, start_s: f64, from: &Body, to: &Body, events: &mut Vec<Happened>) {
-        let seen = self.sensor.see(from, to);
-        let recorder = &mut self.recorder;
-        self.shown = self.stages.tick(
-            &ShaftEstimate::taken(&seen, self.sensor.place(to)),
-            &mut |_| {},
-            &mut |effect, notice| recorder.note((start_s, from, to), effect, &notice, events),
-        );
-    }
-
-    fn tick_in_parts(&mut self, tick: &Span, cuts: &[Cut], events: &mut Vec<Happened>) {
-        let parts = tick.parts(cuts);
-        let recorder = &mut self.recorder;
-        let mut jump_nm = F::ZERO;
-        for (left, part) in (0..parts.len()).rev().zip(&parts) {
-            let Span { from, to, .. } = part;
-            let seen = self.sensor.see(from, to);
-            recorder.step_s = part.length_s;
-            self.retiming.ticks_of(part.length_s);
-            self.shown = self.stages.tick_part(
-                &ShaftEstimate::taken(&seen, self.sensor.place(to)),
-                (&self.retiming, left == 0, jump_nm),
-                &mut |_| {},
-                &mut |effect, notice| {
-                    recorder.note((part.start_s, from, to), effect, &notice, events);
-                },
-            );
-            jump_nm = self.shown.jump_nm;
-        }
-        recorder.step_s = tick.length_s;
-        self.retiming.ticks_of(tick.length_s);
-        self.stages.retime(&self.retiming);
-    }
-
-    fn write(&self, row: &mut Vec<f64>) {
-        self.sensor.write(row);
-    }
-
-    fn is_finite(&self) -> bool {
-        true
-    }
-
-    fn finish(self: Box<Self>, _: f64) -> Option<(Tally, u64)> {
-        None
     }
 }

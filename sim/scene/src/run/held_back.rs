@@ -93,6 +93,11 @@ impl TankAccounting {
         None
     }
 
+    /// Returns whether a beat or a reflex is under way.
+    pub(super) fn is_paying(&self) -> bool {
+        !self.pushes.is_empty()
+    }
+
     fn end(&mut self, place: usize) -> Option<Ended> {
         let Push {
             asked_nm, paid_nm, ..

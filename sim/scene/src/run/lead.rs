@@ -83,6 +83,20 @@ impl Lead {
         due
     }
 
+    /// Counts steps in a slip; returns those, from 1 on, at whose end it is time for a look.
+    pub(super) fn looks_in(&mut self, steps: u64) -> impl Iterator<Item = u64> + use<> {
+        let (first, stride) = (u64::from(self.left), u64::from(self.stride));
+        let left = if steps < first {
+            first - steps
+        } else {
+            stride - (steps - first) % stride
+        };
+        // No more than the stride.
+        self.left = u32::try_from(left).unwrap_or(self.stride);
+        let stride = usize::try_from(stride).unwrap_or(usize::MAX);
+        (first..=steps).step_by(stride)
+    }
+
     /// A look at a slip of sense `sign`.
     #[inline]
     pub fn look(&mut self, sign: f64, omega_rad_s: f64, theta_dot_rad_s: f64) {
@@ -134,6 +148,20 @@ mod tests {
         assert!((lead.behind_s - 2e-3).abs() < 1e-15);
         assert!((lead.behind_j - 0.2 * 0.75 * 1e-3).abs() < 1e-15);
         assert_eq!(lead.worst_rad_s, 0.5);
+    }
+
+    #[test]
+    fn looks_at_many_steps_are_those_at_each() {
+        let [mut each, mut many] = [(); 2].map(|()| Lead::new(&Settings::default(), 5e-5, true));
+        for steps in [0, 1, 18, 1, 0, 19, 20, 38, 500, 7, 3] {
+            let one_by_one = (1..=steps).filter(|_| each.is_due());
+            let expected: Vec<u64> = one_by_one.collect();
+            assert_eq!(
+                many.looks_in(steps).collect::<Vec<_>>(),
+                expected,
+                "{steps}"
+            );
+        }
     }
 
     #[test]

@@ -1,14 +1,14 @@
 //! The stages that a scene's device has around its joint: those of a bare
 //! solver, or all that the drive has.
 
+use super::recorder::Heard;
 use crate::any_joint::AnyJoint;
 use crate::scene::Scene;
 use crepitus_model::control::device_limits::LimitSettings;
 use crepitus_model::control::energy_observer::MOST_DELAY_TICKS;
 use crepitus_model::joint::shaft::Linear;
-use crepitus_model::render::effects::symptom::Change;
 use crepitus_model::render::effects::{
-    EffectSettings, EffectSpec, Effects, Observe, SwitchedEffects, Timing,
+    EffectSettings, EffectSpec, Effects, SwitchedEffects, Timing,
 };
 use crepitus_model::render::input_check::{Checked, InputCheck, InputLimits};
 use crepitus_model::render::limits::TorqueLimits;
@@ -18,7 +18,7 @@ use crepitus_model::render::{
 };
 use crepitus_model::solver::locate::Locate;
 use crepitus_model::{
-    Crepitus, Event, Frozen, Real, Settings, SettingsError, StepCoefficients, StickSlip, Validated,
+    Crepitus, Frozen, Real, Settings, SettingsError, StepCoefficients, StickSlip, Validated,
 };
 use crepitus_plant::effect::Part;
 
@@ -167,29 +167,6 @@ impl<F: Real> InParts<F> for Effects<F> {
     }
 }
 
-/// Report of a symptom from within a tick.
-pub(super) enum Notice<F> {
-    /// An event of it.
-    Change(Change<F>),
-    /// The symptom asks for a torque, and the tank pays so much of it, N·m.
-    Paid { asked_nm: F, paid_nm: F },
-}
-
-/// Passes reports on. Not a closure: the effects would be compiled for that of each pipeline.
-struct Reports<'a, F>(&'a mut dyn FnMut(&'static EffectSpec, Notice<F>));
-
-impl<F: Real> Observe<F> for Reports<'_, F> {
-    const LISTENS: bool = true;
-
-    fn change(&mut self, effect: &'static EffectSpec, change: Change<F>) {
-        (self.0)(effect, Notice::Change(change));
-    }
-
-    fn paid(&mut self, effect: &'static EffectSpec, asked_nm: F, paid_nm: F) {
-        (self.0)(effect, Notice::Paid { asked_nm, paid_nm });
-    }
-}
-
 /// Limits of a device that remember the torque before them.
 pub(super) struct Remembering<F> {
     limits: TorqueLimits<F>,
@@ -225,13 +202,8 @@ impl<F: Real> Asked<F> for Remembering<F> {
 
 /// A pipeline of any stages.
 pub(super) trait Rendering<F> {
-    /// See [`Pipeline::tick_observed`].
-    fn tick(
-        &mut self,
-        seen: &ShaftEstimate<F>,
-        on_event: &mut dyn FnMut(Event<F>),
-        on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
-    ) -> Shown<F>;
+    /// One tick, as [`Pipeline::tick_observed`] makes it, in the place of what was shown before.
+    fn tick(&mut self, seen: &ShaftEstimate<F>, shown: &mut Shown<F>, heard: &mut Heard<F>);
 
     /// Torque before the limits of a device, N·m; none without a device.
     fn asked_nm(&self) -> Option<F>;
@@ -242,8 +214,7 @@ pub(super) trait Rendering<F> {
         &mut self,
         seen: &ShaftEstimate<F>,
         part: (&Retiming, bool, F),
-        on_event: &mut dyn FnMut(Event<F>),
-        on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
+        heard: &mut Heard<F>,
     ) -> Shown<F>;
 
     /// Goes on in ticks of another length.
@@ -254,6 +225,28 @@ pub(super) trait Rendering<F> {
 
     /// Output of a joint that is seen for the first time, which is no tick.
     fn begin(&mut self, seen: &ShaftEstimate<F>, shown: Shown<F>) -> Shown<F>;
+}
+
+/// Renders a tick, or a part of one, into what is `shown` of it so far.
+#[inline(always)]
+#[expect(
+    clippy::inline_always,
+    reason = "a call of the loop, whose arguments and results would pass through memory"
+)]
+fn render<F: Real, I: Check<F>, S: Symptom<F>, E: Addition<F>, L: Limits<F>>(
+    stages: &mut Pipeline<F, I, S, E, L>,
+    seen: &ShaftEstimate<F>,
+    shown: &mut Shown<F>,
+    heard: &mut Heard<F>,
+) {
+    let input = stages.check.check(&seen.sample);
+    let torque = stages
+        .symptoms
+        .tick(&input, shown, |event| heard.events.push(event));
+    shown.torque_nm = torque.shown_nm;
+    shown.model_torque_nm = torque.model_nm;
+    stages.effects.tick(seen, &input, shown, heard);
+    stages.limits.tick(shown);
 }
 
 impl<F: Real, I, S, E, L> Rendering<F> for Pipeline<F, I, S, E, L>
@@ -267,8 +260,7 @@ where
         &mut self,
         seen: &ShaftEstimate<F>,
         (to, is_last, jump_nm): (&Retiming, bool, F),
-        on_event: &mut dyn FnMut(Event<F>),
-        on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
+        heard: &mut Heard<F>,
     ) -> Shown<F> {
         self.retime(to);
         let before = (!is_last).then(|| self.effects.clone());
@@ -276,13 +268,7 @@ where
             jump_nm,
             ..Shown::nothing()
         };
-        let input = self.check.check(&seen.sample);
-        let torque = self.symptoms.tick(&input, &mut shown, on_event);
-        shown.torque_nm = torque.shown_nm;
-        shown.model_torque_nm = torque.model_nm;
-        self.effects
-            .tick(seen, &input, &mut shown, &mut Reports(on_notice));
-        self.limits.tick(&mut shown);
+        render(self, seen, &mut shown, heard);
         if let Some(before) = before {
             self.effects.forget_part(&before);
         }
@@ -294,14 +280,14 @@ where
         self.effects.retime(to);
     }
 
-    #[inline]
-    fn tick(
-        &mut self,
-        seen: &ShaftEstimate<F>,
-        on_event: &mut dyn FnMut(Event<F>),
-        on_notice: &mut dyn FnMut(&'static EffectSpec, Notice<F>),
-    ) -> Shown<F> {
-        self.tick_observed(seen, on_event, &mut Reports(on_notice))
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call of the loop, whose arguments and results would pass through memory"
+    )]
+    fn tick(&mut self, seen: &ShaftEstimate<F>, shown: &mut Shown<F>, heard: &mut Heard<F>) {
+        *shown = Shown::nothing();
+        render(self, seen, shown, heard);
     }
 
     #[inline]
@@ -325,6 +311,9 @@ pub(super) trait HasJoint<F: Real>: Rendering<F> {
     /// The object's type.
     type Joint: StickSlip<F>;
 
+    /// Whether samples can be refused.
+    const REFUSES: bool;
+
     /// The object.
     fn joint(&self) -> &Self::Joint;
 
@@ -333,10 +322,17 @@ pub(super) trait HasJoint<F: Real>: Rendering<F> {
 
     /// Number of gaps after which the object began again.
     fn restarts(&self) -> u32;
+
+    /// The object and the symptoms on it, where there is nothing else and none of them gives
+    /// energy: a tick is then that of each in turn.
+    fn in_turn(&mut self) -> Option<(&mut AnyJoint<F>, &mut Effects<F>)> {
+        None
+    }
 }
 
 impl<F: Real> HasJoint<F> for BareStages<F, Bare<AnyJoint<F>>> {
     type Joint = AnyJoint<F>;
+    const REFUSES: bool = false;
 
     #[inline]
     fn joint(&self) -> &AnyJoint<F> {
@@ -350,10 +346,17 @@ impl<F: Real> HasJoint<F> for BareStages<F, Bare<AnyJoint<F>>> {
     fn restarts(&self) -> u32 {
         0
     }
+
+    fn in_turn(&mut self) -> Option<(&mut AnyJoint<F>, &mut Effects<F>)> {
+        self.effects
+            .is_passive()
+            .then_some((&mut self.symptoms.0, &mut self.effects))
+    }
 }
 
 impl<F: Real, L: Locate<F, Shape = Linear>> HasJoint<F> for DriveStages<F, Crepitus<F, L>> {
     type Joint = Frozen<F, L>;
+    const REFUSES: bool = true;
 
     #[inline]
     fn joint(&self) -> &Self::Joint {

@@ -22,6 +22,15 @@ pub(super) const PROGRESS_STEPS: u64 = 1 << 16;
 /// Number of steps between two checks of the state.
 pub(super) const CHECK_STEPS: u64 = 1 << 10;
 
+/// The next step after `n` with more to do than a step: a row every so many, a check of the
+/// state, progress, or the end. A loop asks for that alone.
+pub(super) fn next_stop(n: u64, steps: u64, every: Option<u64>) -> u64 {
+    let after = |every: u64| (n / every + 1) * every;
+    after(CHECK_STEPS)
+        .min(every.map_or(steps, after))
+        .min(steps)
+}
+
 /// Chooses the types that the scene calls for, and runs.
 pub(super) fn simulate<F: Precise>(
     scene: &Scene,
@@ -60,22 +69,27 @@ fn bare<F: Real, S: Sensor<F>>(
     mut sensor: S,
 ) -> Result<Totals, Ended> {
     let (steps, every) = steps(scene);
-    let wants_rows = watch.wants_rows();
+    let every = watch.wants_rows().then_some(every);
     let mut walk = Walk::new(&scene.motion, scene.step_s());
     let mut row = Vec::new();
     let mut fastest_rad_s = walk.now().omega_rad_s.abs();
+    let mut stop = 0;
     loop {
-        if wants_rows && walk.steps().is_multiple_of(every) {
-            row.clear();
-            row.extend([walk.time_s(), walk.now().angle_rad, walk.now().omega_rad_s]);
-            sensor.write(&mut row);
-            watch.row(&row)?;
-        }
-        if walk.steps().is_multiple_of(PROGRESS_STEPS) {
-            watch.progress(walk.time_s())?;
-        }
-        if walk.steps() == steps {
-            break;
+        let n = walk.steps();
+        if n == stop {
+            if every.is_some_and(|every| n.is_multiple_of(every)) {
+                row.clear();
+                row.extend([walk.time_s(), walk.now().angle_rad, walk.now().omega_rad_s]);
+                sensor.write(&mut row);
+                watch.row(&row)?;
+            }
+            if n.is_multiple_of(PROGRESS_STEPS) {
+                watch.progress(walk.time_s())?;
+            }
+            if n == steps {
+                break;
+            }
+            stop = next_stop(n, steps, every);
         }
         let (from, to) = walk.step();
         fastest_rad_s = fastest_rad_s.max(to.omega_rad_s.abs());
@@ -102,45 +116,50 @@ fn step_joint<F: Real, S: Sensor<F>>(
     mut joint: AnyJoint<F>,
 ) -> Result<Totals, Ended> {
     let (steps, every) = steps(scene);
-    let wants_rows = watch.wants_rows();
+    let every = watch.wants_rows().then_some(every);
     let step_s = scene.step_s();
     let mut walk = Walk::new(&scene.motion, step_s).in_parts::<F>();
     let mut accounting = StepAccounting::new::<F>(settings, step_s, walk.now().omega_rad_s);
     let mut beyond = Beyond::new();
     let mut row = Vec::new();
     let mut fastest_rad_s = walk.now().omega_rad_s.abs();
+    let mut stop = 0;
     accounting.tally.shown(joint.torque_nm().to_f64());
     loop {
-        let is_row = wants_rows && walk.steps().is_multiple_of(every);
-        // Before its row: a trace holds numbers.
-        if (is_row || walk.steps().is_multiple_of(CHECK_STEPS) || walk.steps() == steps)
-            && !(joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite())
-        {
-            return Err(RunError::Diverged(Diverged::Object {
-                solver: scene.solver.name(),
-                by_s: walk.time_s(),
-                radians_per_step: settings.parameters.natural_rad_s() * step_s,
-            }));
-        }
-        if is_row {
-            row.clear();
-            row.extend([
-                walk.time_s(),
-                walk.now().angle_rad,
-                walk.now().omega_rad_s,
-                f64::from(joint.phase().sign()),
-                joint.theta_rad().to_f64(),
-                joint.theta_dot_rad_s().to_f64(),
-                joint.torque_nm().to_f64(),
-            ]);
-            sensor.write(&mut row);
-            watch.row(&row)?;
-        }
-        if walk.steps().is_multiple_of(PROGRESS_STEPS) {
-            watch.progress(walk.time_s())?;
-        }
-        if walk.steps() == steps {
-            break;
+        let n = walk.steps();
+        if n == stop {
+            let is_row = every.is_some_and(|every| n.is_multiple_of(every));
+            // Before its row: a trace holds numbers.
+            if (is_row || n.is_multiple_of(CHECK_STEPS) || n == steps)
+                && !(joint.theta_rad().is_finite() && joint.theta_dot_rad_s().is_finite())
+            {
+                return Err(RunError::Diverged(Diverged::Object {
+                    solver: scene.solver.name(),
+                    by_s: walk.time_s(),
+                    radians_per_step: settings.parameters.natural_rad_s() * step_s,
+                }));
+            }
+            if is_row {
+                row.clear();
+                row.extend([
+                    walk.time_s(),
+                    walk.now().angle_rad,
+                    walk.now().omega_rad_s,
+                    f64::from(joint.phase().sign()),
+                    joint.theta_rad().to_f64(),
+                    joint.theta_dot_rad_s().to_f64(),
+                    joint.torque_nm().to_f64(),
+                ]);
+                sensor.write(&mut row);
+                watch.row(&row)?;
+            }
+            if n.is_multiple_of(PROGRESS_STEPS) {
+                watch.progress(walk.time_s())?;
+            }
+            if n == steps {
+                break;
+            }
+            stop = next_stop(n, steps, every);
         }
         let start_s = walk.time_s();
         let whole = if S::SPLITS {
@@ -294,7 +313,11 @@ impl StepAccounting {
     }
 
     /// Accounts for the rest of a step.
-    #[inline]
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call of the loop, whose arguments and results would pass through memory"
+    )]
     pub(super) fn end_step<F: Real, J: StickSlip<F>>(&mut self, seen: &ShaftStep<F>, joint: &J) {
         match joint.phase() {
             Phase::Stick => self.end_stick(seen, joint),
@@ -327,9 +350,11 @@ impl StepAccounting {
 
     #[inline]
     fn close<F: Real>(&mut self, seen: &ShaftStep<F>) {
-        self.crowded_steps += u64::from(self.in_step >= EVENTS_PER_STEP);
-        self.in_step = 0;
-        self.booked = 0.0;
+        if self.in_step > 0 {
+            self.crowded_steps += u64::from(self.in_step >= EVENTS_PER_STEP);
+            self.in_step = 0;
+            self.booked = 0.0;
+        }
         self.phi_rad += seen.delta_phi_rad.to_f64();
     }
 
@@ -361,14 +386,34 @@ impl StepAccounting {
         joint: &J,
         restarts: u32,
     ) {
-        let gap = self.gap.take();
         if restarts == self.restarts {
             self.end_step(seen, joint);
-            if let Some(gap) = gap {
-                self.tally.caught_up(&gap);
+            if self.gap.is_some() {
+                self.close_gap();
             }
             return;
         }
+        self.restart(seen, start_s, joint, restarts);
+    }
+
+    /// Ends a gap after which the joint went on.
+    #[cold]
+    fn close_gap(&mut self) {
+        if let Some(gap) = self.gap.take() {
+            self.tally.caught_up(&gap);
+        }
+    }
+
+    /// Accounts for a step in which the joint began again.
+    #[cold]
+    fn restart<F: Real, J: StickSlip<F>>(
+        &mut self,
+        seen: &ShaftStep<F>,
+        start_s: f64,
+        joint: &J,
+        restarts: u32,
+    ) {
+        let gap = self.gap.take();
         self.restarts = restarts;
         self.phi_rad += seen.delta_phi_rad.to_f64();
         let now = object_state(start_s + self.step_s, self.phi_rad, joint);
@@ -390,11 +435,19 @@ impl StepAccounting {
     }
 
     /// Accounts for the stick from the last booked point to `fraction`.
+    #[inline]
     fn book_stick<F: Real>(&mut self, seen: &ShaftStep<F>, fraction: f64, theta_rad: f64) {
         let end = self.stick_end(seen, fraction, theta_rad);
         let delta_phi =
             travel(seen, fraction, self.step_s) - travel(seen, self.booked, self.step_s);
+        // A step begins after a jump of the velocity.
+        let omega_rad_s = if self.booked > 0.0 {
+            self.stick.omega_rad_s
+        } else {
+            seen.omega_start_rad_s.to_f64()
+        };
         let start = StickEnd {
+            omega_rad_s,
             omega_dot: end.omega_dot,
             ..self.stick
         };
@@ -408,6 +461,7 @@ impl StepAccounting {
     }
 
     /// The stick at `fraction` of the step.
+    #[inline]
     fn stick_end<F: Real>(&self, seen: &ShaftStep<F>, fraction: f64, theta_rad: f64) -> StickEnd {
         let (a, b) = (
             seen.omega_start_rad_s.to_f64(),
@@ -432,6 +486,7 @@ fn object_state<F: Real, J: StickSlip<F>>(time_s: f64, phi_rad: f64, joint: &J) 
 }
 
 /// Shaft angle travelled after `fraction` of a step, rad.
+#[inline]
 fn travel<F: Real>(seen: &ShaftStep<F>, fraction: f64, step_s: f64) -> f64 {
     ShaftStep {
         delta_phi_rad: seen.delta_phi_rad.to_f64(),

@@ -164,6 +164,10 @@ impl Tally {
 
     /// A stretch of stick of `dt_s` in which the shaft turned by `delta_phi`.
     pub(super) fn stick(&mut self, dt_s: f64, delta_phi: f64, a: StickEnd, b: StickEnd) {
+        // Torn loose by a jump: what the stick would show there was not shown.
+        if dt_s == 0.0 {
+            return;
+        }
         let p = &self.settings.parameters;
         let kr = p.stiffness_nm_per_rad;
         // ∫θ dt over a cubic with these ends and slopes.
@@ -214,6 +218,46 @@ impl Tally {
         }
         self.torque.integral += integral;
         self.torque.square += dt_s * (from * from + from * to + to * to) / 3.0;
+    }
+
+    /// A stretch of whole steps of `step_s` in stick, between `ends`, on a shaft of constant
+    /// acceleration: the sum of what [`Self::stick`] makes of each.
+    pub(super) fn stick_steps(
+        &mut self,
+        dt_s: f64,
+        delta_phi: f64,
+        (a, b): (StickEnd, StickEnd),
+        step_s: f64,
+    ) {
+        self.stick(dt_s, delta_phi, a, b);
+        let p = &self.settings.parameters;
+        let kr = p.stiffness_nm_per_rad;
+        let torque_nm = |end: &StickEnd| match self.settings.convention {
+            Convention::Physical => {
+                kr * end.theta_rad
+                    + p.inertia_kg_m2 * end.omega_dot
+                    + p.damping_nms_per_rad * end.omega_rad_s
+            }
+            Convention::Frozen | Convention::Paper => kr * end.theta_rad,
+        };
+        let sum_nm = torque_nm(&a) + torque_nm(&b);
+        // The mean of a parabola above that of its ends: over the whole, and over a step, of which the
+        // square is that of a straight line.
+        let above_nm = |dt_s: f64| -kr * a.omega_dot * dt_s * dt_s / 12.0;
+        let (whole_nm, step_nm) = (above_nm(dt_s), above_nm(step_s));
+        let integral = dt_s * (0.5 * sum_nm + whole_nm);
+        self.torque.square += dt_s
+            * (whole_nm * sum_nm + 1.2 * whole_nm * whole_nm + 0.8 * step_nm * step_nm)
+            - 2.0 * step_nm * integral;
+    }
+
+    /// A stretch of stick under `frozen`, with these integrals of T, T² and Ω² over time.
+    pub(super) fn spring_stick(&mut self, torque: f64, square: f64, omega_squared: f64) {
+        let viscous = self.settings.parameters.damping_nms_per_rad * omega_squared;
+        self.energy.viscous_j += viscous;
+        self.energy.convention_j += viscous;
+        self.torque.integral += torque;
+        self.torque.square += square;
     }
 
     /// An event at `time_s`, shaft at `phi_rad`.

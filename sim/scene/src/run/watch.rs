@@ -11,6 +11,8 @@ pub(super) struct Stopped;
 pub(super) trait Watch {
     /// Returns whether rows of the trace are needed.
     fn wants_rows(&self) -> bool;
+    /// Returns whether the run is to make every step.
+    fn needs_steps(&self) -> bool;
     fn row(&mut self, values: &[f64]) -> Result<(), Stopped>;
     fn event(&mut self, event: &EventRecord) -> Result<(), Stopped>;
     fn symptom(&mut self, event: &SymptomEvent) -> Result<(), Stopped>;
@@ -44,6 +46,10 @@ impl<O: Observer> Watching<'_, O> {
 impl<O: Observer> Watch for Watching<'_, O> {
     fn wants_rows(&self) -> bool {
         O::WANTS_ROWS
+    }
+
+    fn needs_steps(&self) -> bool {
+        O::WANTS_ROWS || O::NEEDS_STEPS
     }
 
     fn row(&mut self, values: &[f64]) -> Result<(), Stopped> {

@@ -19,7 +19,7 @@ const POLL: Duration = Duration::from_millis(20);
 pub(super) enum Answer {
     /// Go on; what was seen is as expected.
     Yes,
-    /// What was seen is not as expected.
+    /// Something else was seen than is expected.
     No,
     /// Leave the row out.
     Skip,

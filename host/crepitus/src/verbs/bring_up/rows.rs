@@ -74,11 +74,11 @@ pub(super) struct Row {
     pub(super) number: &'static str,
     /// Name for `--rows`.
     pub(super) name: &'static str,
-    /// What to do.
+    /// Instruction to the builder.
     pub(super) does: &'static str,
-    /// What to see.
+    /// Expected sight.
     pub(super) sees: &'static str,
-    /// What the program measures.
+    /// Measurement of the program.
     pub(super) check: Check,
 }
 

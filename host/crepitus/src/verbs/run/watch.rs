@@ -127,6 +127,7 @@ impl EventsAlone {
 impl Observer for EventsAlone {
     type Error = WatchError;
     const WANTS_ROWS: bool = false;
+    const NEEDS_STEPS: bool = false;
 
     fn event(&mut self, event: &EventRecord) -> Result<(), WatchError> {
         self.events.event(event).map_err(WatchError::Write)

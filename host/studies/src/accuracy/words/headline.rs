@@ -1,7 +1,7 @@
 //! The answer of the study in three sentences, and the solvers at the device's tick in a table that fits on a screen.
 
 use super::numbers::plain;
-use super::table::{Row, nearest_to_the_tick, rows, scenes, worst_floor};
+use super::table::{Row, counted, rows, scenes, step_of_tables, worst_floor};
 use crate::accuracy::target::{self, OnTarget, recorded};
 use crate::accuracy::{Input, Study};
 use crepitus_model::Convention;
@@ -14,7 +14,7 @@ use std::borrow::Cow;
 /// The cheapest solver and the exact one, on the host and on the controller, and what holding the torque costs whoever
 /// solves.
 pub(super) fn answer(study: &Study) -> String {
-    let Some(step_s) = nearest_to_the_tick(study) else {
+    let Some(step_s) = step_of_tables(study) else {
         return "No scene is long enough for any of the steps.".to_owned();
     };
     let convention = of_device(study);
@@ -133,7 +133,7 @@ fn single(study: &Study, step_s: f64) -> Vec<Row> {
 
 /// Table of the solvers at the device's tick, of the device's convention and of `physical`.
 pub(super) fn table(study: &Study) -> String {
-    let Some(step_s) = nearest_to_the_tick(study) else {
+    let Some(step_s) = step_of_tables(study) else {
         return String::new();
     };
     let shown = [of_device(study), Convention::Physical.name()];
@@ -144,11 +144,13 @@ pub(super) fn table(study: &Study) -> String {
         let on = &on;
         move |row: &Row| cost(on, row).map_or(f64::NAN, of)
     };
-    Table::of(&rows)
+    let table = Table::of(&rows)
         .people("convention", |row| row.convention)
         .people("solver", |row| row.solver)
         .people("ns/step", |row| row.ns_per_step)
         .rounded(fixed::<1>)
+        .people("instructions", |row| row.instructions)
+        .rounded(fixed::<0>)
         .people("cycles", cycles(|cost| cost.mean_cycles))
         .rounded(fixed::<0>)
         .people("at worst", cycles(|cost| f64::from(cost.worst_cycles)))
@@ -163,5 +165,6 @@ pub(super) fn table(study: &Study) -> String {
             nm => milli(nm),
         })
         .right()
-        .to_text()
+        .to_text();
+    format!("{table}{}\n", counted(study))
 }

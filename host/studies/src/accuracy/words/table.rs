@@ -11,7 +11,7 @@ const TICK_S: f64 = 5e-5;
 /// Table, for each convention and input, of every rung at the device's tick, or at the studied step
 /// that is nearest to it: the worst of all scenes.
 pub(super) fn at_the_tick(study: &Study) -> String {
-    let Some(step_s) = nearest_to_the_tick(study) else {
+    let Some(step_s) = step_of_tables(study) else {
         return "no scene is long enough for any of the steps".to_owned();
     };
     let mut text = format!(
@@ -33,6 +33,8 @@ pub(super) fn at_the_tick(study: &Study) -> String {
             table(rows).to_text()
         );
     }
+    text.push('\n');
+    text.push_str(counted(study));
     text.push_str(&floor(study, step_s));
     for refused in &study.refused {
         let _ = write!(
@@ -47,11 +49,34 @@ pub(super) fn at_the_tick(study: &Study) -> String {
     text
 }
 
-/// The studied step that is nearest to the device's tick, s.
-pub(super) fn nearest_to_the_tick(study: &Study) -> Option<f64> {
+/// The one of these steps that is nearest to the device's tick, s.
+pub(crate) fn nearest_to_the_tick(steps_s: impl Iterator<Item = f64>) -> Option<f64> {
     let away = |h: f64| (h / TICK_S).ln().abs();
-    let steps_s = study.points.iter().map(|p| p.step_s);
     steps_s.min_by(|a, b| away(*a).total_cmp(&away(*b)))
+}
+
+/// The step of the study's tables, s.
+pub(super) fn step_of_tables(study: &Study) -> Option<f64> {
+    nearest_to_the_tick(study.points.iter().map(|p| p.step_s))
+}
+
+/// Counts of each rung in the study's tables that knows the true motion.
+#[cfg(test)]
+pub(crate) fn instructions_at_the_tick(study: &Study) -> Vec<f64> {
+    let step_s = step_of_tables(study).unwrap_or(f64::NAN);
+    let rows = rows(study, step_s).into_iter();
+    rows.filter(|row| row.input == Input::Exact.name())
+        .map(|row| row.instructions)
+        .collect()
+}
+
+/// Sentence on the column of instructions.
+pub(super) fn counted(study: &Study) -> &'static str {
+    if study.is_priced() {
+        "Instructions are valgrind's, on the first scene of each convention."
+    } else {
+        "Instructions were not counted: that needs valgrind."
+    }
 }
 
 fn table(rows: &[Row]) -> Table<'_, Row> {
@@ -60,6 +85,8 @@ fn table(rows: &[Row]) -> Table<'_, Row> {
         .people("precision", |row| row.precision)
         .people("ns/step", |row| row.ns_per_step)
         .rounded(fixed::<1>)
+        .people("instructions", |row| row.instructions)
+        .rounded(fixed::<0>)
         .people("spread, %", |row| 100.0 * row.time_spread)
         .rounded(fixed::<0>)
         .people("event error, s", |row| row.event_s)
@@ -125,6 +152,8 @@ pub(super) struct Row {
     pub(super) precision: &'static str,
     /// Mean over the scenes, ns.
     pub(super) ns_per_step: f64,
+    /// Instructions on the scene on which they were counted.
+    pub(super) instructions: f64,
     /// Largest distance of the quartiles over the median.
     time_spread: f64,
     pub(super) event_s: f64,
@@ -142,6 +171,9 @@ pub(super) fn rows(study: &Study, step_s: f64) -> Vec<Row> {
             Some((row, count)) => {
                 *count += 1.0;
                 row.ns_per_step += (p.ns_per_step - row.ns_per_step) / *count;
+                if row.instructions.is_nan() {
+                    row.instructions = p.host_instructions_per_step;
+                }
                 row.time_spread = worse(row.time_spread, p.time_spread);
                 row.event_s = worse(row.event_s, p.max_event_error_s);
                 row.frequency_rel = worse(row.frequency_rel, p.frequency_error_rel);
@@ -170,6 +202,7 @@ impl Row {
             solver: p.solver,
             precision: p.precision,
             ns_per_step: p.ns_per_step,
+            instructions: p.host_instructions_per_step,
             time_spread: p.time_spread,
             event_s: p.max_event_error_s,
             frequency_rel: p.frequency_error_rel,

@@ -4,7 +4,7 @@ use crate::effects::effects_table::{cost, effects_table};
 use crate::effects::variant::Change;
 use crate::effects::{EffectsStudy, Row};
 use crepitus_pages::table::Table;
-use crepitus_pages::table::show::{UNKNOWN, milli, scaled, signed};
+use crepitus_pages::table::show::{UNKNOWN, fixed, milli, scaled, signed};
 use crepitus_scene::cpu_time::CLOCK;
 
 /// Effects that the scene does not have and that are listed all the same: those that would be felt most.
@@ -14,11 +14,23 @@ const OTHERS: usize = 3;
 pub(super) fn table(study: &EffectsStudy) -> String {
     format!(
         "{}: {} ticks of {} µs\n\n{}\nCosts are {CLOCK}. \"<x\": the difference is below what can be measured, \
-         x ns.\n",
+         x ns. {}\n",
         study.title,
         study.ticks,
         micro(study.tick_s),
-        effects_table(&study.rows).to_text()
+        effects_table(&study.rows).to_text(),
+        counted(study)
+    )
+}
+
+/// Sentence on what was counted.
+pub(super) fn counted(study: &EffectsStudy) -> String {
+    if study.loop_instructions.is_nan() {
+        return "Instructions were not counted: that needs valgrind.".to_owned();
+    }
+    format!(
+        "The loop around them, which no effect pays for, has {:.0} instructions a step.",
+        study.loop_instructions
     )
 }
 
@@ -44,6 +56,10 @@ pub(super) fn short(study: &EffectsStudy) -> String {
                 .map_or(UNKNOWN.to_owned(), |added| cost(&added.time))
         })
         .right()
+        .people("instructions", |(row, _)| {
+            row.added().map_or(f64::NAN, |added| added.instructions)
+        })
+        .rounded(fixed::<0>)
         .people("states", |(row, _)| row.added().map(|added| added.states))
         .rounded(signed)
         .to_text()
