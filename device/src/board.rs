@@ -6,7 +6,7 @@
 //!                └─> docs/generated/board.md   the tables for who builds or ports one
 //! ```
 //!
-//! Another board is another version of this file: the [pins](pins) are a list of rows, the
+//! Another board is another version of this file: the [pins] are a list of rows, the
 //! parts are below. "Another board in a day" in `docs/hardware.md` has the steps.
 
 pub mod analog;
