@@ -14,12 +14,15 @@
 //! what a sample is off their mean, it is off the plant's current. They run after it by half of a dead time.
 //!
 //! **Lag.** Amplifier and filter are one lag λ, whose answer to a line is exact:
-//! y = i − λ·i′ + (y₀ − i₀ + λ·i′)·e^(−t/λ).
+//! y = i − λ·i′ + (y₀ − i₀ + λ·i′)·e^(−t/λ). The last term grows by λ·Δi′ at each bend of the current.
 //!
 //! **Edges.** A half that goes up throws the output of its own amplifier up by D, one that goes down, down; both
 //! die away as e^(−t/τ). τ is that with which a disturbance is 0.5 % of half the range (1.65 V, 2.5 A) after the time
 //! to settle: τ = t/ln(D/12.5 mA). The amplifier of half B is turned round, so the same disturbance is a current of
 //! the other sign.
+//!
+//! **At the samples** it is enough to have the sum of what bends and edges have left there: usually of four at known
+//! places, by one exponential for each of λ and τ (`fading.rs`); else from piece to piece.
 //!
 //! | number | value | source |
 //! |---|---|---|
@@ -31,8 +34,12 @@
 //!
 //! Not measured on hardware.
 
+mod fading;
+mod pulses;
+
 use crate::effects::motor::winding::WindingSettings;
-use crepitus_model::control::current_path::DIODE_V;
+use fading::{FIRST_SAMPLE_S, Fading, Rests};
+use pulses::{Duty, FIRST, OTHER, Piece, Pulses};
 
 /// Half a period of the PWM, s.
 pub const HALF_S: f64 = 25e-6;
@@ -44,8 +51,8 @@ pub const SAMPLES_S: [f64; 4] = [-1.0e-6, -0.285_714e-6, 0.428_571e-6, 1.142_857
 /// Share of half of the range to which an amplifier settles, A: 0.5 % of 1.65 V, at 0.66 V/A.
 const SETTLED_A: f64 = 0.012_5;
 
-/// Pieces of half a tick at most: two edges, their dead times, and a zero of the current in each.
-const MOST_PIECES: usize = 24;
+/// The middle of the samplings, s.
+const SAMPLED_S: f64 = (SAMPLES_S[0] + SAMPLES_S[1] + SAMPLES_S[2] + SAMPLES_S[3]) / 4.0;
 
 /// The numbers of the way of a current.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,33 +89,64 @@ pub enum Half {
     B,
 }
 
-/// A stretch with a constant voltage.
-#[derive(Clone, Copy, Debug)]
-struct Piece {
-    from_s: f64,
-    current_a: f64,
-    slope_a_per_s: f64,
-    /// The current with its lag as the piece begins, A.
-    lagged_a: f64,
+/// What is left of bends and edges at a time, seen from the half that switches first.
+#[derive(Clone, Copy, Debug, Default)]
+struct Left {
+    /// The current shown above i − λ·i′, A.
+    lag_a: f64,
     /// Rest of the excursions upwards and downwards of either half.
     excursions: [[f64; 2]; 2],
+}
+
+impl Left {
+    /// Halves that switch between these levels.
+    fn switch(&mut self, was: u8, is: u8) {
+        for (half, excursions) in [FIRST, OTHER].into_iter().zip(&mut self.excursions) {
+            if (was ^ is) & half != 0 {
+                excursions[usize::from(is & half == 0)] += 1.0;
+            }
+        }
+    }
+
+    /// Multiplies by what is left of the lag, and of excursions upwards and downwards.
+    fn times(&self, lag: f64, [left_up, left_down]: [f64; 2]) -> Self {
+        let [[up, down], [other_up, other_down]] = self.excursions;
+        Self {
+            lag_a: lag * self.lag_a,
+            excursions: [
+                [left_up * up, left_down * down],
+                [left_up * other_up, left_down * other_down],
+            ],
+        }
+    }
+}
+
+/// Levels as the other half sees them.
+fn swapped(highs: u8) -> u8 {
+    (highs & FIRST) << 1 | highs >> 1
 }
 
 /// The way of a motor's current.
 #[derive(Clone, Debug)]
 pub struct CurrentPath {
     settings: CurrentPathSettings,
-    winding: WindingSettings,
-    supply_v: f64,
-    decay_s: [f64; 2],
-    /// Level of either half: true for high.
-    levels: [Option<bool>; 2],
-    lagged_a: f64,
-    excursions: [[f64; 2]; 2],
-    /// The pieces of the last half tick.
-    pieces: Vec<Piece>,
-    /// The current at its end, A.
-    end_a: f64,
+    lag: Fading,
+    /// Excursions upwards, and downwards.
+    decays: [Fading; 2],
+    /// Distance of edges from the middle of half a tick, s, and rests of the lag with it.
+    known_rests: (f64, Rests),
+    /// Halves that are high, seen from A; none while the bridge floats.
+    highs: Option<u8>,
+    /// The last half tick.
+    pulses: Pulses,
+    /// Half B switched first in it.
+    is_turned: bool,
+    /// What was left as it began.
+    begun: Left,
+    /// A time near the first sample, s, after which there is neither bend nor edge, and what was left then.
+    sampled: (f64, Left),
+    /// What was left at its end.
+    ended: Left,
 }
 
 impl CurrentPath {
@@ -118,183 +156,174 @@ impl CurrentPath {
         winding: WindingSettings,
         supply_v: f64,
     ) -> Option<Self> {
-        (!settings.is_ideal()).then(|| Self {
+        if settings.is_ideal() {
+            return None;
+        }
+        let dead_s = settings.dead_time_s;
+        let lag = Fading::new(settings.lag_s, dead_s);
+        let decay = |decay_s| Fading::new(decay_s, dead_s);
+        Some(Self {
             settings,
-            winding,
-            supply_v,
-            decay_s: settings.decay_s(),
-            levels: [None; 2],
-            lagged_a: 0.0,
-            excursions: [[0.0; 2]; 2],
-            pieces: Vec::with_capacity(MOST_PIECES),
-            end_a: 0.0,
+            lag,
+            decays: settings.decay_s().map(decay),
+            known_rests: (0.0, lag.rests(0.0)),
+            highs: None,
+            pulses: Pulses::new(winding, supply_v, dead_s),
+            is_turned: false,
+            begun: Left::default(),
+            sampled: (FIRST_SAMPLE_S, Left::default()),
+            ended: Left::default(),
         })
     }
 
     /// Half a tick of a bridge that floats: its current is seen late, nothing switches.
     pub fn float(&mut self, current_a: f64) {
-        self.levels = [None; 2];
-        self.pieces.clear();
-        self.push(0.0, current_a, 0.0);
-        self.end(HALF_S);
-        self.end_a = current_a;
+        let shown_a = self.turn(false);
+        self.pulses.float(current_a);
+        self.begin(shown_a);
+        self.highs = None;
+        self.fade_by_pieces();
     }
 
     /// The first or the second half of a tick, from the bottom of the PWM to the middle or back, with a duty from −1
     /// to 1, from this current on. Returns the mean voltage at the winding, V, and the current at the end, A.
     pub fn half(&mut self, is_second: bool, duty: f64, start_a: f64, emf_v: f64) -> (f64, f64) {
         let duty = duty.clamp(-1.0, 1.0);
-        let quarter_s = HALF_S / 2.0;
-        let signs = if is_second { [-1.0, 1.0] } else { [1.0, -1.0] };
-        let edges_s = signs.map(|sign: f64| quarter_s * (1.0 + sign * duty));
-        let dead_s = self.settings.dead_time_s;
-        let mut marks_s = [
-            edges_s[0],
-            edges_s[0] + dead_s,
-            edges_s[1],
-            edges_s[1] + dead_s,
-            HALF_S,
-        ];
-        marks_s.sort_by(f64::total_cmp);
-        self.pieces.clear();
-        let (mut now_s, mut current_a, mut volt_seconds) = (0.0, start_a, 0.0);
-        for _ in 0..MOST_PIECES {
-            if now_s >= HALF_S {
-                break;
-            }
-            let next = marks_s.iter().copied().find(|mark| *mark > now_s);
-            let until_s = next.unwrap_or(HALF_S).min(HALF_S);
-            // As a half goes up in the second half of a tick and down in the first.
-            let reference = edges_s.map(|edge_s| (now_s >= edge_s) == is_second);
-            let is_dead = edges_s.map(|edge_s| now_s >= edge_s && now_s < edge_s + dead_s);
-            let way = self.way(current_a, emf_v, reference, is_dead);
-            let length_s = until_s - now_s;
-            let (volts, end_a, length_s) = match way {
-                None => (emf_v, 0.0, length_s),
-                Some(volts) => {
-                    let a =
-                        self.winding.resistance_ohm * length_s / (2.0 * self.winding.inductance_h);
-                    let b = (volts[0] - volts[1] - emf_v) * length_s / self.winding.inductance_h;
-                    let end_a = (current_a * (1.0 - a) + b) / (1.0 + a);
-                    let volts = volts[0] - volts[1];
-                    if is_dead.contains(&true) && current_a * end_a < 0.0 {
-                        (volts, 0.0, length_s * current_a / (current_a - end_a))
-                    } else {
-                        (volts, end_a, length_s)
-                    }
-                }
-            };
-            self.edges(way, reference, is_dead);
-            let slope = if length_s > 0.0 {
-                (end_a - current_a) / length_s
-            } else {
-                0.0
-            };
-            self.push(now_s, current_a, slope);
-            self.end(now_s + length_s);
-            volt_seconds += volts * length_s;
-            // A zero that is at the mark itself is not looked for again.
-            now_s = if until_s - (now_s + length_s) < 1e-15 {
-                until_s
-            } else {
-                now_s + length_s
-            };
-            current_a = end_a;
-        }
-        self.end_a = current_a;
-        (volt_seconds / HALF_S, current_a)
-    }
-
-    /// Voltages of the two halves, V; `None` where no current flows.
-    fn way(
-        &self,
-        current_a: f64,
-        emf_v: f64,
-        reference: [bool; 2],
-        is_dead: [bool; 2],
-    ) -> Option<[f64; 2]> {
-        // A current that leaves half A enters half B.
-        let level = |half: usize, leaves: bool| match (is_dead[half], leaves) {
-            (true, true) => -DIODE_V,
-            (true, false) => self.supply_v + DIODE_V,
-            (false, _) if reference[half] => self.supply_v,
-            (false, _) => 0.0,
+        let is_turned = (duty > 0.0) != is_second;
+        let shown_a = self.turn(is_turned);
+        let sign = self.sign();
+        let half = Duty {
+            is_second,
+            apart_s: HALF_S / 2.0 * duty.abs(),
+            emf_v: sign * emf_v,
         };
-        let levels = |flows: f64| [level(0, flows > 0.0), level(1, flows < 0.0)];
-        if current_a != 0.0 || is_dead == [false; 2] {
-            return Some(levels(current_a));
+        let turned = |highs| if is_turned { swapped(highs) } else { highs };
+        let before = self.highs.map(turned);
+        self.pulses.run(&half, sign * start_a, before);
+        self.begin(shown_a);
+        let (first, last) = (self.pulses.first().highs, self.pulses.last());
+        let (highs, last_s) = (last.highs, last.from_s);
+        self.highs = Some(turned(highs));
+        let before = before.unwrap_or(first);
+        if self.pulses.is_plain && last_s <= FIRST_SAMPLE_S && before == first {
+            self.fade(&half);
+        } else {
+            self.begun.switch(before, first);
+            self.fade_by_pieces();
         }
-        [1.0, -1.0].into_iter().find_map(|flows| {
-            let [a, b] = levels(flows);
-            ((a - b - emf_v) * flows > 0.0).then_some([a, b])
-        })
+        (sign * self.pulses.mean_v, sign * self.pulses.end_a)
     }
 
-    /// Edges of the halves as a piece begins.
-    fn edges(&mut self, way: Option<[f64; 2]>, reference: [bool; 2], is_dead: [bool; 2]) {
-        for half in [0, 1] {
-            let level = match way {
-                Some(volts) => Some(volts[half] > self.supply_v / 2.0),
-                None if is_dead[half] => self.levels[half],
-                None => Some(reference[half]),
-            };
-            if let (Some(was), Some(is)) = (self.levels[half], level)
-                && was != is
-            {
-                self.excursions[half][usize::from(!is)] += 1.0;
-            }
-            self.levels[half] = level;
+    /// Sign of a current that leaves the half that switches first.
+    fn sign(&self) -> f64 {
+        if self.is_turned { -1.0 } else { 1.0 }
+    }
+
+    /// Turns to the half that switches first, with what the end of the last half tick has left. Returns the current with
+    /// its lag, A.
+    fn turn(&mut self, is_turned: bool) -> f64 {
+        let behind_a = self.settings.lag_s * self.pulses.last().slope_a_per_s;
+        let shown_a = self.pulses.end_a - behind_a + self.ended.lag_a;
+        let [first, other] = self.ended.excursions;
+        if is_turned == self.is_turned {
+            self.begun.excursions = [first, other];
+            return shown_a;
         }
+        self.is_turned = is_turned;
+        self.begun.excursions = [other, first];
+        -shown_a
     }
 
-    fn push(&mut self, from_s: f64, current_a: f64, slope_a_per_s: f64) {
-        self.pieces.push(Piece {
-            from_s,
-            current_a,
-            slope_a_per_s,
-            lagged_a: self.lagged_a,
-            excursions: self.excursions,
-        });
+    /// Begins with the current that was shown, A.
+    fn begin(&mut self, shown_a: f64) {
+        let first = self.pulses.first();
+        let behind_a = self.settings.lag_s * first.slope_a_per_s;
+        self.begun.lag_a = shown_a - first.current_a + behind_a;
     }
 
-    /// Goes to the end of the last piece.
-    fn end(&mut self, at_s: f64) {
-        if let Some(piece) = self.pieces.last() {
-            self.lagged_a = self.lagged_a(piece, at_s);
-            self.excursions = self.excursions(piece, at_s);
+    /// Fades what is left through five pieces, in which either half has one edge.
+    fn fade(&mut self, half: &Duty) {
+        if self.known_rests.0 != half.apart_s {
+            self.known_rests = (half.apart_s, self.lag.rests(half.apart_s));
         }
+        let Rests { earlier, later } = self.known_rests.1;
+        let [up, down] = &self.decays;
+        let [a, b, c, d, e] = self.pulses.five();
+        let slopes = [a, b, c, d, e].map(|piece| piece.slope_a_per_s);
+        let inner = if self.pulses.is_overlapping {
+            [later[0], earlier[1]]
+        } else {
+            [earlier[1], later[0]]
+        };
+        let bends = (slopes[1] - slopes[0]) * earlier[0]
+            + (slopes[2] - slopes[1]) * inner[0]
+            + (slopes[3] - slopes[2]) * inner[1]
+            + (slopes[4] - slopes[3]) * later[1];
+        let mut left = self
+            .begun
+            .times(self.lag.to_first, [up.to_first, down.to_first]);
+        left.lag_a += self.settings.lag_s * bends;
+        let way = usize::from(!half.is_second);
+        let Rests { earlier, later } = self.decays[way].rests(half.apart_s);
+        // A diode holds the level for a dead time, or takes that which follows.
+        let is_held = [
+            (a.highs ^ b.highs) & FIRST == 0,
+            (d.highs ^ e.highs) & OTHER != 0,
+        ];
+        left.excursions[0][way] += earlier[usize::from(is_held[0])];
+        left.excursions[1][way] += later[usize::from(is_held[1])];
+        self.ended = left.times(self.lag.to_end, [up.to_end, down.to_end]);
+        self.sampled = (FIRST_SAMPLE_S, left);
     }
 
-    fn lagged_a(&self, piece: &Piece, at_s: f64) -> f64 {
-        let length_s = at_s - piece.from_s;
-        let current_a = piece.current_a + piece.slope_a_per_s * length_s;
-        if self.settings.lag_s <= 0.0 {
-            return current_a;
+    /// Fades what is left from piece to piece.
+    fn fade_by_pieces(&mut self) {
+        let from_s = self.pulses.last().from_s.max(FIRST_SAMPLE_S);
+        let (_, left) = self.left_at(from_s);
+        self.ended = self.faded(&left, HALF_S - from_s);
+        self.sampled = (from_s, left);
+    }
+
+    fn faded(&self, left: &Left, length_s: f64) -> Left {
+        let [up, down] = &self.decays;
+        left.times(
+            self.lag.left(length_s),
+            [up.left(length_s), down.left(length_s)],
+        )
+    }
+
+    /// The piece at a time, and what is left then.
+    fn left_at(&self, at_s: f64) -> (&Piece, Left) {
+        let (mut piece, mut left) = (self.pulses.first(), self.begun);
+        let others = self.pulses.pieces().iter().skip(1);
+        for next in others.take_while(|next| next.from_s <= at_s) {
+            left = self.faded(&left, next.from_s - piece.from_s);
+            left.lag_a += self.settings.lag_s * (next.slope_a_per_s - piece.slope_a_per_s);
+            left.switch(piece.highs, next.highs);
+            piece = next;
         }
-        let behind_a = self.settings.lag_s * piece.slope_a_per_s;
-        let from_a = piece.lagged_a - piece.current_a + behind_a;
-        current_a - behind_a + from_a * (-length_s / self.settings.lag_s).exp()
-    }
-
-    fn excursions(&self, piece: &Piece, at_s: f64) -> [[f64; 2]; 2] {
-        let left = self
-            .decay_s
-            .map(|decay_s| (-(at_s - piece.from_s) / decay_s).exp());
-        piece
-            .excursions
-            .map(|[up, down]| [up * left[0], down * left[1]])
+        (piece, self.faded(&left, at_s - piece.from_s))
     }
 
     /// The current as the amplifier at a half shows it `at_s` after the last half tick began, A. Shortly beyond its
     /// end, too: nothing switches there.
     pub fn shown_a(&self, half: Half, at_s: f64) -> f64 {
-        let piece = self.pieces.iter().rev().find(|piece| piece.from_s <= at_s);
-        let Some(piece) = piece.or(self.pieces.first()) else {
-            return self.lagged_a;
+        let (from_s, left) = &self.sampled;
+        let (piece, left) = if at_s >= *from_s {
+            (self.pulses.last(), self.faded(left, at_s - from_s))
+        } else {
+            self.left_at(at_s)
         };
-        let [up, down] = self.excursions(piece, at_s)[half as usize];
+        self.shows_a(half, piece, at_s, &left)
+    }
+
+    /// The current as the amplifier at a half shows it, A.
+    fn shows_a(&self, half: Half, piece: &Piece, at_s: f64, left: &Left) -> f64 {
+        let behind_a = self.settings.lag_s * piece.slope_a_per_s;
+        let lagged_a = self.sign() * (piece.current_a(at_s) - behind_a + left.lag_a);
+        let is_other = (half == Half::B) != self.is_turned;
+        let [up, down] = left.excursions[usize::from(is_other)];
         let thrown_a = self.settings.excursion_a * (up - down);
-        let lagged_a = self.lagged_a(piece, at_s);
         match half {
             Half::A => lagged_a + thrown_a,
             Half::B => lagged_a - thrown_a,
@@ -303,31 +332,28 @@ impl CurrentPath {
 
     /// Mean of the current over the last half tick, A.
     pub fn mean_a(&self) -> f64 {
-        let ends_s = self.pieces.iter().skip(1).map(|piece| piece.from_s);
-        let pieces = self.pieces.iter().zip(ends_s.chain([HALF_S]));
-        let charges = pieces.map(|(piece, end_s)| {
-            let length_s = end_s - piece.from_s;
-            length_s * (piece.current_a + 0.5 * piece.slope_a_per_s * length_s)
-        });
-        charges.sum::<f64>() / HALF_S
+        self.sign() * self.pulses.mean_a
     }
 
     /// The current at the end of the last half tick without its ripple, A: that of the plant, which the pulses of a
     /// dead time run after by half of it.
     pub fn even_a(&self) -> f64 {
-        let start_a = self
-            .pieces
-            .first()
-            .map_or(self.end_a, |piece| piece.current_a);
-        self.mean_a() + 0.5 * (self.end_a - start_a)
+        let gained_a = self.pulses.end_a - self.pulses.first().current_a;
+        self.sign() * (self.pulses.mean_a + 0.5 * gained_a)
     }
 
     /// The mean of the samples of a tick around the end of the last half tick, A.
     pub fn sampled_a(&self, half: Half) -> f64 {
-        let sum: f64 = SAMPLES_S
-            .iter()
-            .map(|at_s| self.shown_a(half, HALF_S + at_s))
-            .sum();
-        sum / 4.0
+        let (from_s, left) = &self.sampled;
+        if *from_s > FIRST_SAMPLE_S {
+            let shown_a = SAMPLES_S.map(|at_s| self.shown_a(half, HALF_S + at_s));
+            return shown_a.iter().sum::<f64>() / 4.0;
+        }
+        let [up, down] = &self.decays;
+        let left = left.times(self.lag.sampled, [up.sampled, down.sampled]);
+        self.shows_a(half, self.pulses.last(), HALF_S + SAMPLED_S, &left)
     }
 }
+
+#[cfg(test)]
+mod tests;
