@@ -26,7 +26,7 @@ pub mod winding;
 use crate::actuator::{Actuator, Commanded};
 use crate::chain::Push;
 use crate::effect::{Context, Effect, Given, Part, numbers, parameters};
-use crate::effects::motor::current_path::{CurrentPath, CurrentPathSettings, Half};
+use crate::effects::motor::current_path::{CurrentPath, CurrentPathSettings};
 use crate::effects::motor::winding::{Course, Winding, WindingSettings};
 use crate::energy_balance::{Account, EnergyBalance};
 use crepitus_model::control::current_loop::{CurrentLoop, CurrentLoopSettings};
@@ -224,7 +224,7 @@ impl<F: Real> Motor<F> {
         let start_a = self.winding.current_a();
         real.duty = self.voltage_v / real.supply_v;
         let (first_v, middle_a) = real.path.half(false, real.duty, start_a, real.emf_v);
-        let sampled_a = [Half::A, Half::B].map(|half| real.path.sampled_a(half));
+        let sampled_a = real.path.samples_a();
         // Against the current that the plant has in the middle.
         let even_a = real.path.even_a();
         let (second_v, _) = real.path.half(true, real.duty, middle_a, real.emf_v);

@@ -22,7 +22,7 @@
 //! the other sign.
 //!
 //! **At the samples** it is enough to have the sum of what bends and edges have left there: usually of four at known
-//! places, by one exponential for each of λ and τ (`fading.rs`); else from piece to piece.
+//! places, by one exponential for each of λ and τ (`fading.rs`); else, and at other times, from piece to piece.
 //!
 //! | number | value | source |
 //! |---|---|---|
@@ -39,7 +39,7 @@ mod pulses;
 
 use crate::effects::motor::winding::WindingSettings;
 use fading::{FIRST_SAMPLE_S, Fading, Rests};
-use pulses::{Duty, FIRST, OTHER, Piece, Pulses};
+use pulses::{FIRST, HalfTick, OTHER, Piece, PlainWay, Pulses, Way};
 
 /// Half a period of the PWM, s.
 pub const HALF_S: f64 = 25e-6;
@@ -109,6 +109,7 @@ impl Left {
     }
 
     /// Multiplies by what is left of the lag, and of excursions upwards and downwards.
+    #[inline]
     fn times(&self, lag: f64, [left_up, left_down]: [f64; 2]) -> Self {
         let [[up, down], [other_up, other_down]] = self.excursions;
         Self {
@@ -130,6 +131,7 @@ fn swapped(highs: u8) -> u8 {
 #[derive(Clone, Debug)]
 pub struct CurrentPath {
     settings: CurrentPathSettings,
+    pulses: Pulses,
     lag: Fading,
     /// Excursions upwards, and downwards.
     decays: [Fading; 2],
@@ -137,16 +139,35 @@ pub struct CurrentPath {
     known_rests: (f64, Rests),
     /// Halves that are high, seen from A; none while the bridge floats.
     highs: Option<u8>,
-    /// The last half tick.
-    pulses: Pulses,
-    /// Half B switched first in it.
+    last_half: LastHalf,
+}
+
+/// The last half tick, seen from the half that switches first.
+#[derive(Clone, Debug)]
+struct LastHalf {
+    /// That half is B.
     is_turned: bool,
-    /// What was left as it began.
-    begun: Left,
-    /// A time near the first sample, s, after which there is neither bend nor edge, and what was left then.
+    /// None if the bridge floats.
+    half: Option<HalfTick>,
+    start_a: f64,
+    /// Levels before it.
+    before: Option<u8>,
+    /// The current with its lag as it began, A, and what was left of excursions.
+    begun: (f64, [[f64; 2]; 2]),
+    /// The last piece.
+    piece: Piece,
+    /// A time in it at the first sample or later, s, and what was left then.
     sampled: (f64, Left),
-    /// What was left at its end.
-    ended: Left,
+    mean_a: f64,
+    end_a: f64,
+}
+
+impl LastHalf {
+    /// Sign of a current that leaves the half that switches first.
+    #[inline]
+    fn sign(&self) -> f64 {
+        if self.is_turned { -1.0 } else { 1.0 }
+    }
 }
 
 impl CurrentPath {
@@ -164,24 +185,31 @@ impl CurrentPath {
         let decay = |decay_s| Fading::new(decay_s, dead_s);
         Some(Self {
             settings,
+            pulses: Pulses::new(winding, supply_v, dead_s),
             lag,
             decays: settings.decay_s().map(decay),
             known_rests: (0.0, lag.rests(0.0)),
             highs: None,
-            pulses: Pulses::new(winding, supply_v, dead_s),
-            is_turned: false,
-            begun: Left::default(),
-            sampled: (FIRST_SAMPLE_S, Left::default()),
-            ended: Left::default(),
+            last_half: LastHalf {
+                is_turned: false,
+                half: None,
+                start_a: 0.0,
+                before: None,
+                begun: (0.0, [[0.0; 2]; 2]),
+                piece: Piece::default(),
+                sampled: (FIRST_SAMPLE_S, Left::default()),
+                mean_a: 0.0,
+                end_a: 0.0,
+            },
         })
     }
 
     /// Half a tick of a bridge that floats: its current is seen late, nothing switches.
     pub fn float(&mut self, current_a: f64) {
-        let shown_a = self.turn(false);
-        self.pulses.float(current_a);
-        self.begin(shown_a);
         self.highs = None;
+        self.begin(false);
+        self.last_half.half = None;
+        self.last_half.start_a = current_a;
         self.fade_by_pieces();
     }
 
@@ -189,101 +217,125 @@ impl CurrentPath {
     /// to 1, from this current on. Returns the mean voltage at the winding, V, and the current at the end, A.
     pub fn half(&mut self, is_second: bool, duty: f64, start_a: f64, emf_v: f64) -> (f64, f64) {
         let duty = duty.clamp(-1.0, 1.0);
-        let is_turned = (duty > 0.0) != is_second;
-        let shown_a = self.turn(is_turned);
-        let sign = self.sign();
-        let half = Duty {
+        self.begin((duty > 0.0) != is_second);
+        let sign = self.last_half.sign();
+        let half = HalfTick {
             is_second,
             apart_s: HALF_S / 2.0 * duty.abs(),
             emf_v: sign * emf_v,
+            start_a: sign * start_a,
         };
-        let turned = |highs| if is_turned { swapped(highs) } else { highs };
-        let before = self.highs.map(turned);
-        self.pulses.run(&half, sign * start_a, before);
-        self.begin(shown_a);
-        let (first, last) = (self.pulses.first().highs, self.pulses.last());
-        let (highs, last_s) = (last.highs, last.from_s);
-        self.highs = Some(turned(highs));
-        let before = before.unwrap_or(first);
-        if self.pulses.is_plain && last_s <= FIRST_SAMPLE_S && before == first {
-            self.fade(&half);
+        self.last_half.half = Some(half);
+        self.last_half.start_a = half.start_a;
+        let is_usual = self.highs.is_none_or(|highs| highs == half.was());
+        match self.pulses.plain_way(&half) {
+            Some(way) if is_usual => self.fade(&half, &way),
+            _ => self.fade_by_pieces(),
+        }
+        let LastHalf { mean_a, end_a, .. } = self.last_half;
+        let mean_v = self.pulses.mean_v(&half, mean_a, end_a);
+        (sign * mean_v, sign * end_a)
+    }
+
+    /// Begins half a tick with what the last one has left, seen from the half that switches first now.
+    #[inline]
+    fn begin(&mut self, is_turned: bool) {
+        let last = &self.last_half;
+        let (from_s, left) = &last.sampled;
+        let [up, down] = &self.decays;
+        let left = if *from_s == FIRST_SAMPLE_S {
+            left.times(self.lag.to_end, [up.to_end, down.to_end])
         } else {
-            self.begun.switch(before, first);
-            self.fade_by_pieces();
-        }
-        (sign * self.pulses.mean_v, sign * self.pulses.end_a)
+            self.faded(left, HALF_S - from_s)
+        };
+        let behind_a = self.settings.lag_s * last.piece.slope_a_per_s;
+        let shown_a = last.end_a - behind_a + left.lag_a;
+        let [first, other] = left.excursions;
+        let last = &mut self.last_half;
+        last.begun = if is_turned == last.is_turned {
+            (shown_a, [first, other])
+        } else {
+            last.is_turned = is_turned;
+            (-shown_a, [other, first])
+        };
     }
 
-    /// Sign of a current that leaves the half that switches first.
-    fn sign(&self) -> f64 {
-        if self.is_turned { -1.0 } else { 1.0 }
-    }
-
-    /// Turns to the half that switches first, with what the end of the last half tick has left. Returns the current with
-    /// its lag, A.
-    fn turn(&mut self, is_turned: bool) -> f64 {
-        let behind_a = self.settings.lag_s * self.pulses.last().slope_a_per_s;
-        let shown_a = self.pulses.end_a - behind_a + self.ended.lag_a;
-        let [first, other] = self.ended.excursions;
-        if is_turned == self.is_turned {
-            self.begun.excursions = [first, other];
-            return shown_a;
-        }
-        self.is_turned = is_turned;
-        self.begun.excursions = [other, first];
-        -shown_a
-    }
-
-    /// Begins with the current that was shown, A.
-    fn begin(&mut self, shown_a: f64) {
-        let first = self.pulses.first();
-        let behind_a = self.settings.lag_s * first.slope_a_per_s;
-        self.begun.lag_a = shown_a - first.current_a + behind_a;
-    }
-
-    /// Fades what is left through five pieces, in which either half has one edge.
-    fn fade(&mut self, half: &Duty) {
+    /// Fades what is left through a plain way.
+    #[inline]
+    fn fade(&mut self, half: &HalfTick, way: &PlainWay) {
         if self.known_rests.0 != half.apart_s {
             self.known_rests = (half.apart_s, self.lag.rests(half.apart_s));
         }
         let Rests { earlier, later } = self.known_rests.1;
-        let [up, down] = &self.decays;
-        let [a, b, c, d, e] = self.pulses.five();
-        let slopes = [a, b, c, d, e].map(|piece| piece.slope_a_per_s);
-        let inner = if self.pulses.is_overlapping {
+        let inner = if way.is_overlapping {
             [later[0], earlier[1]]
         } else {
             [earlier[1], later[0]]
         };
-        let bends = (slopes[1] - slopes[0]) * earlier[0]
-            + (slopes[2] - slopes[1]) * inner[0]
-            + (slopes[3] - slopes[2]) * inner[1]
-            + (slopes[4] - slopes[3]) * later[1];
-        let mut left = self
-            .begun
-            .times(self.lag.to_first, [up.to_first, down.to_first]);
-        left.lag_a += self.settings.lag_s * bends;
-        let way = usize::from(!half.is_second);
-        let Rests { earlier, later } = self.decays[way].rests(half.apart_s);
-        // A diode holds the level for a dead time, or takes that which follows.
-        let is_held = [
-            (a.highs ^ b.highs) & FIRST == 0,
-            (d.highs ^ e.highs) & OTHER != 0,
-        ];
-        left.excursions[0][way] += earlier[usize::from(is_held[0])];
-        left.excursions[1][way] += later[usize::from(is_held[1])];
-        self.ended = left.times(self.lag.to_end, [up.to_end, down.to_end]);
-        self.sampled = (FIRST_SAMPLE_S, left);
+        let [zeroth, first, second, third, fourth] = way.slopes_a_per_s;
+        let bends = (first - zeroth) * earlier[0]
+            + (second - first) * inner[0]
+            + (third - second) * inner[1]
+            + (fourth - third) * later[1];
+        let last = &mut self.last_half;
+        let lag_s = self.settings.lag_s;
+        let (shown_a, [mut of_first, mut of_other]) = last.begun;
+        let begun_a = shown_a - half.start_a + lag_s * zeroth;
+        let [up, down] = &self.decays;
+        // Upwards in the second half of a tick, downwards in the first.
+        let (place, decay) = if half.is_second { (0, up) } else { (1, down) };
+        let Rests { earlier, later } = decay.rests(half.apart_s);
+        for excursions in [&mut of_first, &mut of_other] {
+            excursions[0] *= up.to_first;
+            excursions[1] *= down.to_first;
+        }
+        of_first[place] += earlier[usize::from(way.is_held[0])];
+        of_other[place] += later[usize::from(way.is_held[1])];
+        let left = Left {
+            lag_a: begun_a * self.lag.to_first + lag_s * bends,
+            excursions: [of_first, of_other],
+        };
+        last.before = self.highs;
+        last.sampled = (FIRST_SAMPLE_S, left);
+        last.piece = way.last;
+        last.mean_a = way.charge_as / HALF_S;
+        last.end_a = way.end_a;
+        self.highs = Some(half.is());
     }
 
     /// Fades what is left from piece to piece.
+    #[cold]
     fn fade_by_pieces(&mut self) {
-        let from_s = self.pulses.last().from_s.max(FIRST_SAMPLE_S);
-        let (_, left) = self.left_at(from_s);
-        self.ended = self.faded(&left, HALF_S - from_s);
-        self.sampled = (from_s, left);
+        let is_turned = self.last_half.is_turned;
+        let turned = |highs| if is_turned { swapped(highs) } else { highs };
+        self.last_half.before = self.highs.map(turned);
+        let way = self.way();
+        let piece = way.pieces().last().copied().unwrap_or_default();
+        let from_s = piece.from_s.max(FIRST_SAMPLE_S);
+        let (_, left) = self.left_at(&way, from_s);
+        let last = &mut self.last_half;
+        last.sampled = (from_s, left);
+        last.piece = piece;
+        last.mean_a = way.charge_as / HALF_S;
+        last.end_a = way.end_a;
+        self.highs = last.half.map(|_| turned(piece.highs));
     }
 
+    /// The last half tick in pieces.
+    fn way(&self) -> Way {
+        let LastHalf {
+            half,
+            start_a,
+            before,
+            ..
+        } = &self.last_half;
+        match half {
+            Some(half) => self.pulses.way(half, *before),
+            None => Way::floating(*start_a),
+        }
+    }
+
+    #[inline]
     fn faded(&self, left: &Left, length_s: f64) -> Left {
         let [up, down] = &self.decays;
         left.times(
@@ -293,14 +345,22 @@ impl CurrentPath {
     }
 
     /// The piece at a time, and what is left then.
-    fn left_at(&self, at_s: f64) -> (&Piece, Left) {
-        let (mut piece, mut left) = (self.pulses.first(), self.begun);
-        let others = self.pulses.pieces().iter().skip(1);
-        for next in others.take_while(|next| next.from_s <= at_s) {
+    fn left_at(&self, way: &Way, at_s: f64) -> (Piece, Left) {
+        let lag_s = self.settings.lag_s;
+        let LastHalf { begun, before, .. } = &self.last_half;
+        let (shown_a, excursions) = *begun;
+        let mut pieces = way.pieces().iter();
+        let mut piece = pieces.next().copied().unwrap_or_default();
+        let mut left = Left {
+            lag_a: shown_a - piece.current_a + lag_s * piece.slope_a_per_s,
+            excursions,
+        };
+        left.switch(before.unwrap_or(piece.highs), piece.highs);
+        for next in pieces.take_while(|next| next.from_s <= at_s) {
             left = self.faded(&left, next.from_s - piece.from_s);
-            left.lag_a += self.settings.lag_s * (next.slope_a_per_s - piece.slope_a_per_s);
+            left.lag_a += lag_s * (next.slope_a_per_s - piece.slope_a_per_s);
             left.switch(piece.highs, next.highs);
-            piece = next;
+            piece = *next;
         }
         (piece, self.faded(&left, at_s - piece.from_s))
     }
@@ -308,50 +368,61 @@ impl CurrentPath {
     /// The current as the amplifier at a half shows it `at_s` after the last half tick began, A. Shortly beyond its
     /// end, too: nothing switches there.
     pub fn shown_a(&self, half: Half, at_s: f64) -> f64 {
-        let (from_s, left) = &self.sampled;
+        let (from_s, left) = &self.last_half.sampled;
         let (piece, left) = if at_s >= *from_s {
-            (self.pulses.last(), self.faded(left, at_s - from_s))
+            (self.last_half.piece, self.faded(left, at_s - from_s))
         } else {
-            self.left_at(at_s)
+            self.left_at(&self.way(), at_s)
         };
-        self.shows_a(half, piece, at_s, &left)
+        self.shows_a(&piece, at_s, &left)[half as usize]
     }
 
-    /// The current as the amplifier at a half shows it, A.
-    fn shows_a(&self, half: Half, piece: &Piece, at_s: f64, left: &Left) -> f64 {
+    /// The current as the amplifiers at both halves show it, A.
+    #[inline]
+    fn shows_a(&self, piece: &Piece, at_s: f64, left: &Left) -> [f64; 2] {
         let behind_a = self.settings.lag_s * piece.slope_a_per_s;
-        let lagged_a = self.sign() * (piece.current_a(at_s) - behind_a + left.lag_a);
-        let is_other = (half == Half::B) != self.is_turned;
-        let [up, down] = left.excursions[usize::from(is_other)];
-        let thrown_a = self.settings.excursion_a * (up - down);
-        match half {
-            Half::A => lagged_a + thrown_a,
-            Half::B => lagged_a - thrown_a,
-        }
+        let lagged_a = self.last_half.sign() * (piece.current_a(at_s) - behind_a + left.lag_a);
+        let thrown_a = |[up, down]: [f64; 2]| self.settings.excursion_a * (up - down);
+        let [first, other] = left.excursions;
+        let [a, b] = if self.last_half.is_turned {
+            [other, first]
+        } else {
+            [first, other]
+        };
+        [lagged_a + thrown_a(a), lagged_a - thrown_a(b)]
     }
 
     /// Mean of the current over the last half tick, A.
     pub fn mean_a(&self) -> f64 {
-        self.sign() * self.pulses.mean_a
+        self.last_half.sign() * self.last_half.mean_a
     }
 
     /// The current at the end of the last half tick without its ripple, A: that of the plant, which the pulses of a
     /// dead time run after by half of it.
+    #[inline]
     pub fn even_a(&self) -> f64 {
-        let gained_a = self.pulses.end_a - self.pulses.first().current_a;
-        self.sign() * (self.pulses.mean_a + 0.5 * gained_a)
+        let last = &self.last_half;
+        last.sign() * (last.mean_a + 0.5 * (last.end_a - last.start_a))
+    }
+
+    /// The mean of the samples of a tick around the end of the last half tick by the amplifiers of both halves, A.
+    #[inline]
+    pub fn samples_a(&self) -> [f64; 2] {
+        let (from_s, left) = &self.last_half.sampled;
+        if *from_s > FIRST_SAMPLE_S {
+            return [Half::A, Half::B].map(|half| {
+                let shown_a = SAMPLES_S.map(|at_s| self.shown_a(half, HALF_S + at_s));
+                shown_a.iter().sum::<f64>() / 4.0
+            });
+        }
+        let [up, down] = &self.decays;
+        let left = left.times(self.lag.sampled, [up.sampled, down.sampled]);
+        self.shows_a(&self.last_half.piece, HALF_S + SAMPLED_S, &left)
     }
 
     /// The mean of the samples of a tick around the end of the last half tick, A.
     pub fn sampled_a(&self, half: Half) -> f64 {
-        let (from_s, left) = &self.sampled;
-        if *from_s > FIRST_SAMPLE_S {
-            let shown_a = SAMPLES_S.map(|at_s| self.shown_a(half, HALF_S + at_s));
-            return shown_a.iter().sum::<f64>() / 4.0;
-        }
-        let [up, down] = &self.decays;
-        let left = left.times(self.lag.sampled, [up.sampled, down.sampled]);
-        self.shows_a(half, self.pulses.last(), HALF_S + SAMPLED_S, &left)
+        self.samples_a()[half as usize]
     }
 }
 
