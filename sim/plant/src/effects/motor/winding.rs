@@ -28,6 +28,8 @@ pub struct WindingSettings {
 #[derive(Clone, Copy, Debug)]
 pub struct Winding {
     settings: WindingSettings,
+    /// Half of L/R, s.
+    half_tau_s: f64,
     transient: Transient,
     current_a: f64,
     /// Mean torque over the last step; positive opposes growing angle.
@@ -45,6 +47,12 @@ struct Transient {
     left: f64,
     /// Mean of that share over the time.
     mean: f64,
+    /// Mean share of the way to the final current.
+    forced: f64,
+    /// Mean torque that opposes a velocity, N·m·s.
+    slope_nms: f64,
+    /// Share of the square of a difference that is gone at the end.
+    spent: f64,
 }
 
 /// The current over a step: `final_a` plus the decaying rest of `from_a`.
@@ -70,10 +78,14 @@ impl Winding {
     pub fn new(settings: WindingSettings, current_a: f64, usual_s: f64) -> Self {
         let mut winding = Self {
             settings,
+            half_tau_s: 0.5 * (settings.inductance_h / settings.resistance_ohm),
             transient: Transient {
                 length_s: 0.0,
                 left: 1.0,
                 mean: 1.0,
+                forced: 0.0,
+                slope_nms: 0.0,
+                spent: 0.0,
             },
             current_a,
             torque_nm: 0.0,
@@ -81,7 +93,7 @@ impl Winding {
             supplied_j: 0.0,
             copper_j: 0.0,
         };
-        winding.transient = winding.transient(usual_s);
+        winding.hold_for(usual_s);
         winding
     }
 
@@ -90,15 +102,32 @@ impl Winding {
         &self.settings
     }
 
-    fn transient(&self, length_s: f64) -> Transient {
-        if length_s == self.transient.length_s {
-            return self.transient;
+    /// Makes this the length of the transient, s.
+    #[inline]
+    fn hold_for(&mut self, length_s: f64) {
+        if length_s != self.transient.length_s {
+            self.transient = self.transient(length_s);
         }
-        let x = self.settings.resistance_ohm * length_s / self.settings.inductance_h;
+    }
+
+    #[cold]
+    fn transient(&self, length_s: f64) -> Transient {
+        let WindingSettings {
+            resistance_ohm,
+            inductance_h,
+            constant,
+        } = self.settings;
+        let x = resistance_ohm * length_s / inductance_h;
+        let left = (-x).exp();
+        let mean = -(-x).exp_m1() / x;
+        let forced = 1.0 - mean;
         Transient {
             length_s,
-            left: (-x).exp(),
-            mean: -(-x).exp_m1() / x,
+            left,
+            mean,
+            forced,
+            slope_nms: constant * constant * forced / resistance_ohm,
+            spent: 1.0 - left * left,
         }
     }
 
@@ -120,12 +149,12 @@ impl Winding {
             constant,
             ..
         } = self.settings;
-        self.transient = self.transient(length_s);
-        let forced = 1.0 - self.transient.mean;
-        let amperes = self.transient.mean * self.current_a + forced * voltage_v / resistance_ohm;
+        self.hold_for(length_s);
+        let t = &self.transient;
+        let amperes = t.mean * self.current_a + t.forced * voltage_v / resistance_ohm;
         Push {
             torque_nm: constant * amperes,
-            slope_nms: constant * constant * forced / resistance_ohm,
+            slope_nms: t.slope_nms,
             held_by_nm: None,
         }
     }
@@ -156,13 +185,13 @@ impl Winding {
             constant,
             ..
         } = self.settings;
-        let t = self.transient(length_s);
+        self.hold_for(length_s);
+        let t = &self.transient;
         let Course { final_a, from_a } = *course;
         let mean_a = final_a + t.mean * from_a;
         // ∫i² dt of an exponential.
-        let tau_s = self.time_constant_s();
         let square = length_s * final_a * (final_a + 2.0 * t.mean * from_a)
-            + 0.5 * tau_s * from_a * from_a * (1.0 - t.left * t.left);
+            + self.half_tau_s * from_a * from_a * t.spent;
         self.copper_j += resistance_ohm * square;
         self.supplied_j += voltage_v * mean_a * length_s;
         self.torque_nm = -constant * mean_a;
