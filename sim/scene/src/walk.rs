@@ -18,8 +18,10 @@ pub struct Walk<M> {
     n: u64,
     time_s: f64,
     now: Body,
-    /// The parts of the last step that was split.
+    /// The parts of the last step that was split; none if it is whole.
     parts: Vec<Part>,
+    /// Both ends of that one.
+    ends: (Body, Body),
     /// The shortest part, s: a break closer to an end of its part counts as there.
     least_part_s: f64,
 }
@@ -66,6 +68,7 @@ impl<M: Borrow<Motion>> Walk<M> {
             time_s: 0.0,
             now,
             parts: Vec::new(),
+            ends: (now, now),
             least_part_s: 0.0,
         }
     }
@@ -171,7 +174,8 @@ impl<M: Borrow<Motion>> Walk<M> {
         self.n += 1;
         self.time_s = self.clock.time_s(self.n);
         if self.piece.end_s < self.time_s {
-            return self.split();
+            self.split();
+            return self.parts.is_empty().then_some(self.ends);
         }
         let from = self.now;
         let to = self.body_now();
@@ -203,10 +207,10 @@ impl<M: Borrow<Motion>> Walk<M> {
         &self.parts
     }
 
-    /// Splits the step to the present time at the ends of its pieces; returns it whole where
+    /// Splits the step to the present time at the ends of its pieces; leaves it whole where
     /// these are all as good as at its ends.
     #[cold]
-    fn split(&mut self) -> Option<(Body, Body)> {
+    fn split(&mut self) {
         let end_s = self.time_s;
         let mut part_s = self.clock.time_s(self.n - 1);
         let mut from = self.now;
@@ -239,15 +243,14 @@ impl<M: Borrow<Motion>> Walk<M> {
         let mut to = body(&self.piece, end_s);
         self.arrive(to);
         to.omega_rad_s = ends_with.unwrap_or(to.omega_rad_s);
-        if self.parts.is_empty() {
-            return Some((from, to));
+        self.ends = (from, to);
+        if !self.parts.is_empty() {
+            self.parts.push(Part {
+                length_s: end_s - part_s,
+                from,
+                to,
+            });
         }
-        self.parts.push(Part {
-            length_s: end_s - part_s,
-            from,
-            to,
-        });
-        None
     }
 
     /// One step of the motion and of a plant that is held by it; returns the shaft at its

@@ -33,10 +33,7 @@ impl Reached {
     /// Accounts for the velocity of the shaft as the next tick begins, rad/s.
     #[inline]
     pub(super) fn note_speed(&mut self, omega_rad_s: f64) {
-        let speed_rad_s = omega_rad_s.abs();
-        if speed_rad_s > self.fastest_rad_s {
-            self.fastest_rad_s = speed_rad_s;
-        }
+        note_speed(&mut self.fastest_rad_s, omega_rad_s);
     }
 
     /// Accounts for a tick of the mechanics: impulse that the hand felt, without impacts, and the
@@ -54,5 +51,14 @@ impl Reached {
         self.time_s = time_s;
         self.beyond
             .note(self.command.asked_nm, (time_s, self.tick_s));
+    }
+}
+
+/// Accounts for a velocity of the shaft, rad/s, in the fastest so far.
+#[inline]
+pub(super) fn note_speed(fastest_rad_s: &mut f64, omega_rad_s: f64) {
+    let speed_rad_s = omega_rad_s.abs();
+    if speed_rad_s > *fastest_rad_s {
+        *fastest_rad_s = speed_rad_s;
     }
 }

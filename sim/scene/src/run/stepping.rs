@@ -2,6 +2,7 @@
 
 use super::held_back::{Beyond, TankTotals};
 use super::lead::Lead;
+use super::reached::note_speed;
 use super::sensor::{Encoded, Ideal, Sensor};
 use super::tally::{Gap, ObjectState, StickEnd, Tally};
 use super::watch::{Ended, Watch};
@@ -92,7 +93,7 @@ fn bare<F: Real, S: Sensor<F>>(
             stop = next_stop(n, steps, every);
         }
         let (from, to) = walk.step();
-        fastest_rad_s = fastest_rad_s.max(to.omega_rad_s.abs());
+        note_speed(&mut fastest_rad_s, to.omega_rad_s);
         std::hint::black_box(sensor.see(&from, &to));
     }
     Ok(Totals {
@@ -169,7 +170,7 @@ fn step_joint<F: Real, S: Sensor<F>>(
         };
         let Some((from, to)) = whole else {
             for part in walk.parts() {
-                fastest_rad_s = fastest_rad_s.max(part.to.omega_rad_s.abs());
+                note_speed(&mut fastest_rad_s, part.to.omega_rad_s);
             }
             let parts = (start_s, walk.parts());
             step_in_parts(
@@ -182,7 +183,7 @@ fn step_joint<F: Real, S: Sensor<F>>(
             )?;
             continue;
         };
-        fastest_rad_s = fastest_rad_s.max(to.omega_rad_s.abs());
+        note_speed(&mut fastest_rad_s, to.omega_rad_s);
         let seen = sensor.see(&from, &to);
         let mut result = Ok(());
         joint.step(&seen, |event| {
