@@ -279,18 +279,22 @@ impl CurrentPath {
             + (fourth - third) * later[1];
         let last = &mut self.last_half;
         let lag_s = self.settings.lag_s;
-        let (shown_a, [mut of_first, mut of_other]) = last.begun;
+        let (shown_a, [of_first, of_other]) = last.begun;
         let begun_a = shown_a - half.start_a + lag_s * zeroth;
         let [up, down] = &self.decays;
-        // Upwards in the second half of a tick, downwards in the first.
-        let (place, decay) = if half.is_second { (0, up) } else { (1, down) };
+        let decay = if half.is_second { up } else { down };
         let Rests { earlier, later } = decay.rests(half.apart_s);
-        for excursions in [&mut of_first, &mut of_other] {
-            excursions[0] *= up.to_first;
-            excursions[1] *= down.to_first;
-        }
-        of_first[place] += earlier[usize::from(way.is_held[0])];
-        of_other[place] += later[usize::from(way.is_held[1])];
+        // Upwards in the second half of a tick, downwards in the first.
+        let thrown = |[was_up, was_down]: [f64; 2], rest: f64| {
+            let left = [was_up * up.to_first, was_down * down.to_first];
+            if half.is_second {
+                [left[0] + rest, left[1]]
+            } else {
+                [left[0], left[1] + rest]
+            }
+        };
+        let of_first = thrown(of_first, earlier[usize::from(way.is_held[0])]);
+        let of_other = thrown(of_other, later[usize::from(way.is_held[1])]);
         let left = Left {
             lag_a: begun_a * self.lag.to_first + lag_s * bends,
             excursions: [of_first, of_other],
