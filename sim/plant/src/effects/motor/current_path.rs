@@ -22,7 +22,7 @@
 //! the other sign.
 //!
 //! **At the samples** it is enough to have the sum of what bends and edges have left there: usually of four at known
-//! places, by one exponential for each of λ and τ (`fading.rs`); else, and at other times, from piece to piece.
+//! places, by tables of λ and τ and a series between (`fading.rs`); else, and at other times, from piece to piece.
 //!
 //! | number | value | source |
 //! |---|---|---|
@@ -186,9 +186,9 @@ impl CurrentPath {
         Some(Self {
             settings,
             pulses: Pulses::new(winding, supply_v, dead_s),
+            known_rests: (0.0, lag.rests(0.0)),
             lag,
             decays: settings.decay_s().map(decay),
-            known_rests: (0.0, lag.rests(0.0)),
             highs: None,
             last_half: LastHalf {
                 is_turned: false,

@@ -8,21 +8,56 @@
 //! at the earlier one:   e^(−(c + x)/τ) = e^(−2c/τ)/l                e^(−2c/τ)/l·e^(−D/τ)
 //! ```
 //!
-//! One exponential is left of four. Nothing is approximated: a rest is off by its own rounding and by that of the times,
-//! as an exponential of each would be, by less than u·(8 + h/τ), with the unit roundoff u = 2⁻⁵³.
+//! One exponential is left of four. Of that, l is tabled at 128 places of x, and between them times a series:
+//!
+//! ```text
+//! l(x) = l(x₀)·e^y,   y = (x − x₀)/τ,   |y| ≤ h/1024τ ≤ 0.1
+//! ```
+//!
+//! What the series of ten terms leaves out is less than 0.1¹⁰/10!·1.01 < u/3 of it, with the unit roundoff u = 2⁻⁵³. The
+//! rest is rounding, of the product and of times: a rest is off by less than u·(8 + h/τ), as an exponential of each time
+//! would be. A time constant below 0.49 µs is beyond the reach of the series, and has its exponential.
 
 use super::{HALF_S, SAMPLES_S};
+
+/// Places at which a rest is tabled, over a quarter of a tick.
+const PLACES: usize = 128;
+
+/// Distance between them, s.
+const PLACE_S: f64 = HALF_S / 2.0 / 128.0;
+
+/// The furthest from a place in time constants.
+const REACH: f64 = 0.1;
+
+/// What is added rounds a number below 2⁵¹ to a whole one, which its last bits are.
+const WHOLE: f64 = 4_503_599_627_370_496.0;
+
+/// Coefficients of the series of an exponential, from the last one.
+const SERIES: [f64; 10] = [
+    1.0 / 362_880.0,
+    1.0 / 40_320.0,
+    1.0 / 5_040.0,
+    1.0 / 720.0,
+    1.0 / 120.0,
+    1.0 / 24.0,
+    1.0 / 6.0,
+    1.0 / 2.0,
+    1.0,
+    1.0,
+];
 
 /// The first sample, from the beginning of the half tick before it, s.
 pub(super) const FIRST_SAMPLE_S: f64 = HALF_S + SAMPLES_S[0];
 
 /// An exponential with its factors.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Fading {
     /// 1/τ, 1/s.
     per_s: f64,
     /// c, s.
     centre_s: f64,
+    /// l at each place; none beyond the reach of the series.
+    later: Option<[f64; PLACES]>,
     /// e^(−2c/τ).
     both: f64,
     /// What a dead time leaves.
@@ -50,9 +85,17 @@ impl Fading {
         let per_s = time_constant_s.recip().min(f64::MAX);
         let left = |length_s: f64| (-length_s * per_s).exp();
         let centre_s = FIRST_SAMPLE_S - HALF_S / 2.0 - dead_s;
+        let mut later = [0.0; PLACES];
+        let mut place = 0.0;
+        for rest in &mut later {
+            // Not summed up: its rounding is that of a product, which `rests` has, too.
+            *rest = left(centre_s - PLACE_S * place);
+            place += 1.0;
+        }
         Self {
             per_s,
             centre_s,
+            later: (0.5 * PLACE_S * per_s <= REACH).then_some(later),
             both: left(2.0 * centre_s),
             dead: left(dead_s),
             to_first: left(FIRST_SAMPLE_S),
@@ -66,14 +109,27 @@ impl Fading {
     }
 
     /// What is left after a time, s.
+    #[inline]
     pub(super) fn left(&self, length_s: f64) -> f64 {
         (-length_s * self.per_s).exp()
     }
 
     /// Rests of what begins with edges that are `apart_s` from the middle of the half tick, s, whose dead times end before
     /// the first sample.
+    #[inline]
     pub(super) fn rests(&self, apart_s: f64) -> Rests {
-        let later = self.left(self.centre_s - apart_s);
+        let later = match &self.later {
+            Some(later) => {
+                let rounded = apart_s * (1.0 / PLACE_S) + WHOLE;
+                let away_s = apart_s - PLACE_S * (rounded - WHOLE);
+                let [place, ..] = rounded.to_le_bytes();
+                let y = away_s * self.per_s;
+                let [first, terms @ ..] = SERIES;
+                let series = terms.iter().fold(first, |sum, term| sum * y + term);
+                later[usize::from(place) % PLACES] * series
+            }
+            None => self.left(self.centre_s - apart_s),
+        };
         // Of an exponential that is over long before, both are zero.
         let earlier = self.both / later.max(f64::MIN_POSITIVE);
         Rests {
