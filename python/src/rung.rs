@@ -2,7 +2,7 @@
 
 use crate::scene::Scene;
 use crate::signals::Signals;
-use crepitus_joints::{Columns, Counts, JointError, Joints, Lanes, Motion};
+use crepitus_ladder::joints::{Columns, Counts, JointError, Joints, Lanes, Motion};
 use crepitus_model::{Parameters, Real, Settings};
 use crepitus_scene::scene::{Precision, SolverChoice};
 use numpy::{Element, IntoPyArray, PyReadonlyArrayDyn};

@@ -22,12 +22,13 @@
 //! | friction laws of others | [`laws`] |
 //! | cost of its steps | [`cost`] |
 //! | loops that are timed on the host | `loops` |
+//! | many joints at once, on the host | `joints` |
 //!
 //! A step is one call of one function that is never inlined. Its address is in
 //! the block, so that counting needs no symbols; copying inputs and outputs is
 //! outside of it.
-#![no_std]
-#![forbid(unsafe_code)]
+#![cfg_attr(not(feature = "joints"), no_std)]
+#![cfg_attr(not(feature = "joints"), forbid(unsafe_code))]
 #![deny(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -41,11 +42,17 @@
 
 #[cfg(feature = "loops")]
 extern crate alloc;
-#[cfg(test)]
+#[cfg(all(test, not(feature = "joints")))]
 extern crate std;
 
 pub mod cost;
 pub mod exchange;
+#[cfg(feature = "joints")]
+#[expect(
+    clippy::indexing_slicing,
+    reason = "never on the target; lanes and steps are numbered by their loops"
+)]
+pub mod joints;
 pub mod laws;
 #[cfg(feature = "loops")]
 pub mod loops;

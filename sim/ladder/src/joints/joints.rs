@@ -1,7 +1,7 @@
 //! Joints, their state and its copies.
 
-use crate::many::{Lanes, Many, Work};
-use crate::motion::{Columns, Counts, Motion};
+use crate::joints::many::{Lanes, Many, StepPart, Work};
+use crate::joints::motion::{Columns, Counts, Motion, State, StepEvent};
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Settings, SettingsError, Validated};
 use thiserror::Error;
@@ -157,6 +157,41 @@ impl<F: Lanes> Joints<F> {
         self.many
             .step(motion.turns_rad, motion.speeds_rad_s, motion.is_of_each);
         Ok(())
+    }
+
+    /// Makes a step of a joint in parts, where its motion breaks within the step; `after` gets the events of each
+    /// part, all as of step 0, and the state at its end. A joint that is not there is ignored.
+    pub fn step_in_parts(
+        &mut self,
+        joint: usize,
+        parts: &[StepPart<F>],
+        mut after: impl FnMut(&[StepEvent<F>], &State<F>),
+    ) {
+        if joint < self.len() {
+            self.many.step_in_parts(joint, parts, &mut after);
+        }
+    }
+
+    /// Lets the speed of all shafts jump to this one, rad/s, between two steps.
+    pub fn jump(&mut self, omega_rad_s: F) {
+        self.many.jump(omega_rad_s);
+    }
+
+    /// Records events from now on, until [`take_events`](Self::take_events).
+    pub fn record_events(&mut self) {
+        self.many.record_events();
+    }
+
+    /// Takes the recorded events of a joint, in the order of time; steps are numbered within the call that made
+    /// them.
+    pub fn take_events(&mut self, joint: usize) -> impl Iterator<Item = StepEvent<F>> + '_ {
+        let recorded = if joint < self.len() {
+            self.many.events(joint)
+        } else {
+            None
+        };
+        let taken = recorded.map(|events| events.drain(..));
+        taken.into_iter().flatten()
     }
 
     /// Puts a joint in stick where its shaft is, with this torque (N·m, at most ±Ts) and speed (rad/s); one

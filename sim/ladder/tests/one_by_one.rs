@@ -1,9 +1,10 @@
 //! Many joints at once have the bits that each has by itself, step by step.
 
-use crepitus_joints::{Columns, Counts, Joints, Lanes, Motion};
+use crepitus_ladder::joints::{Columns, Counts, Joints, Lanes, Motion};
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
 use crepitus_model::{
-    Convention, EventKind, Parameters, Restart, Settings, ShaftStep, StickSlip, Validated,
+    Convention, EventKind, Parameters, Restart, Settings, ShaftStep, StepCoefficients, StickSlip,
+    Validated,
 };
 use fastrand::Rng;
 
@@ -280,6 +281,171 @@ fn one_motion_is_that_of_each() {
         assert_eq!(one.torques_nm(), of_each.torques_nm());
         assert_eq!(one.omegas_rad_s(), [0.2; 7]);
     }
+}
+
+/// What a shaft does.
+enum Way<F> {
+    /// Steps with these turns and speeds.
+    Steps(Vec<F>, Vec<F>),
+    /// A jump to a speed.
+    Jump(F),
+    /// A step in parts of these lengths, s.
+    Parts(Vec<(f64, ShaftStep<F>)>),
+}
+
+/// Ways of a hand that jumps, now between steps and now within them.
+fn ways<F: Lanes>(random: &mut Rng, step_s: f64) -> Vec<Way<F>> {
+    let mut speed = 0.5;
+    let mut next = |random: &mut Rng| {
+        speed = if random.f64() < 0.3 {
+            -speed
+        } else {
+            6.0 * (random.f64() - 0.4)
+        };
+        speed
+    };
+    let mut ways = Vec::new();
+    for _ in 0..40 {
+        let steps = random.usize(1..60);
+        let (speed, after) = (next(random), next(random));
+        let [speed_f, after_f] = [speed, after].map(F::from_f64);
+        ways.push(Way::Jump(speed_f));
+        let turn = F::from_f64(speed * step_s);
+        ways.push(Way::Steps(vec![turn; steps], vec![speed_f; steps]));
+        let cut_s = step_s * (0.01 + 0.98 * random.f64());
+        let part = |omega: f64, length_s: f64| {
+            let shaft = ShaftStep {
+                delta_phi_rad: F::from_f64(omega * length_s),
+                omega_start_rad_s: F::from_f64(omega),
+                omega_end_rad_s: F::from_f64(omega),
+            };
+            (length_s, shaft)
+        };
+        ways.push(Way::Parts(vec![
+            part(speed, cut_s),
+            part(after, step_s - cut_s),
+        ]));
+        ways.push(Way::Steps(
+            vec![F::from_f64(after * step_s); 9],
+            vec![after_f; 9],
+        ));
+    }
+    ways
+}
+
+/// An event: number of its way, of its step or part there, and its numbers; or the state after a part.
+type Note = (usize, usize, String);
+
+/// The model's own joint on such a way.
+struct OnWays<'a, F> {
+    settings: &'a Validated<Settings>,
+    ways: &'a [Way<F>],
+    omega_rad_s: F,
+}
+
+impl<F: Lanes> JointVisitor<F> for OnWays<'_, F> {
+    type Output = Vec<Note>;
+
+    fn visit<J: StickSlip<F>>(mut self, mut joint: J) -> Vec<Note> {
+        let mut notes = Vec::new();
+        for (at, way) in self.ways.iter().enumerate() {
+            match way {
+                Way::Jump(omega) => self.omega_rad_s = *omega,
+                Way::Steps(turns, speeds) => {
+                    for (n, (turn, speed)) in turns.iter().zip(speeds).enumerate() {
+                        let shaft = ShaftStep {
+                            delta_phi_rad: *turn,
+                            omega_start_rad_s: self.omega_rad_s,
+                            omega_end_rad_s: *speed,
+                        };
+                        joint.step(&shaft, |event| notes.push((at, n, format!("{event:?}"))));
+                        self.omega_rad_s = *speed;
+                    }
+                }
+                Way::Parts(parts) => {
+                    let whole = *joint.coefficients();
+                    for (n, (length_s, shaft)) in parts.iter().enumerate() {
+                        joint.change_step(StepCoefficients::new(self.settings, *length_s).unwrap());
+                        joint.step(shaft, |event| notes.push((at, n, format!("{event:?}"))));
+                        let state = (joint.phase(), joint.torque_nm(), joint.motion());
+                        notes.push((at, n, format!("{state:?}")));
+                        self.omega_rad_s = shaft.omega_end_rad_s;
+                    }
+                    joint.change_step(whole);
+                }
+            }
+        }
+        notes
+    }
+}
+
+fn compare_on_ways<F: Lanes>(random: &mut Rng, convention: Convention) -> usize {
+    let (step_s, omega) = (2e-4, F::from_f64(0.5));
+    let ways = ways::<F>(random, step_s);
+    let settings: Vec<_> = (0..11).map(|_| settings(random, convention)).collect();
+    let each = settings.iter().map(|settings| (*settings, omega));
+    let mut joints = Joints::new(each, Solver::ExactEvents, step_s).unwrap();
+    joints.record_events();
+    let mut notes: Vec<Vec<Note>> = vec![Vec::new(); settings.len()];
+    for (at, way) in ways.iter().enumerate() {
+        match way {
+            Way::Jump(omega) => joints.jump(*omega),
+            Way::Steps(turns, speeds) => {
+                let motion = Motion::of_all(turns, speeds);
+                joints
+                    .steps(motion, Columns::default(), 1, || true)
+                    .unwrap();
+                for (n, notes) in notes.iter_mut().enumerate() {
+                    let events = joints.take_events(n);
+                    notes.extend(events.map(|e| (at, e.step, format!("{:?}", e.event))));
+                }
+            }
+            Way::Parts(parts) => {
+                for (n, notes) in notes.iter_mut().enumerate() {
+                    let of = |(length_s, shaft): &(f64, ShaftStep<F>)| {
+                        (
+                            StepCoefficients::new(&settings[n], *length_s).unwrap(),
+                            *shaft,
+                        )
+                    };
+                    let mut part = 0;
+                    let parts: Vec<_> = parts.iter().map(of).collect();
+                    joints.step_in_parts(n, &parts, |events, state| {
+                        notes.extend(events.iter().map(|e| (at, part, format!("{:?}", e.event))));
+                        let motion = (state.theta_rad, state.theta_dot_rad_s);
+                        let state = (state.phase, state.torque_nm, motion);
+                        notes.push((at, part, format!("{state:?}")));
+                        part += 1;
+                    });
+                }
+            }
+        }
+    }
+    for (n, (settings, notes)) in settings.iter().zip(&notes).enumerate() {
+        let alone = OnWays {
+            settings,
+            ways: &ways,
+            omega_rad_s: omega,
+        };
+        let expected = with_joint(settings, Solver::ExactEvents, step_s, omega, alone).unwrap();
+        let wrong = notes.iter().zip(&expected).position(|(a, b)| a != b);
+        assert_eq!(wrong, None, "{} {}, joint {n}", F::NAME, convention.name());
+        assert_eq!(notes.len(), expected.len());
+    }
+    notes.iter().map(Vec::len).sum()
+}
+
+#[test]
+fn events_jumps_and_parts_of_steps_are_those_of_each_alone() {
+    let mut random = Rng::with_seed(60);
+    let mut notes = 0;
+    for convention in CONVENTIONS {
+        for _ in 0..5 {
+            notes += compare_on_ways::<f64>(&mut random, convention);
+            notes += compare_on_ways::<f32>(&mut random, convention);
+        }
+    }
+    assert!(notes > 40_000, "{notes}");
 }
 
 #[test]

@@ -10,9 +10,9 @@
 //!
 //! A lane is as far in its motion as it is, not as the others are; one that has ended takes the next joint.
 
-use crate::many::{Each, Lanes, UNWATCHED_STEPS, Work};
-use crate::rung::OfRung;
-use crate::slips::{LANES, Slips};
+use crate::joints::many::{Each, Lanes, UNWATCHED_STEPS, Work};
+use crate::joints::rung::OfRung;
+use crate::joints::slips::{LANES, Slips};
 use crepitus_model::joint::Coast;
 use crepitus_model::{Real, StickSlip};
 use std::array::from_fn;
@@ -275,7 +275,11 @@ impl<'a, 'w, F: Lanes, J: StickSlip<F>> Block<'a, 'w, J, F> {
                 place.made
             };
             let each = &mut self.joints[place.joint];
-            each.step(self.work.turns_rad[at], self.work.speeds_rad_s[at]);
+            each.step(
+                place.made,
+                self.work.turns_rad[at],
+                self.work.speeds_rad_s[at],
+            );
             let part = self.work.columns.part(row..row + 1);
             part.torque_nm.fill(each.joint.torque_nm());
             part.phase.fill(each.joint.phase().sign());

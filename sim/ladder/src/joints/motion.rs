@@ -1,6 +1,6 @@
 //! Inputs of steps, and what is kept of them.
 
-use crepitus_model::EventKind;
+use crepitus_model::{Event, EventKind, Phase};
 use std::ops::Range;
 
 /// Shaft's turns and speeds through steps, for all joints or for each.
@@ -103,6 +103,28 @@ impl<F> Columns<'_, F> {
         };
         (first, rest)
     }
+}
+
+/// An event, with the number of its step in the arrays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepEvent<F> {
+    /// Number of the step, from 0.
+    pub step: usize,
+    /// The event.
+    pub event: Event<F>,
+}
+
+/// State of a joint after a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<F> {
+    /// Phase.
+    pub phase: Phase,
+    /// Torque, N·m.
+    pub torque_nm: F,
+    /// Angle of the object, rad.
+    pub theta_rad: F,
+    /// Velocity of the object, rad/s.
+    pub theta_dot_rad_s: F,
 }
 
 /// Events of a joint since it was made.

@@ -15,20 +15,18 @@
 //!
 //! | to find | look in |
 //! |---|---|
-//! | joints, their state and its copies | [`joints`] |
+//! | joints, their state and its copies | `joints` |
 //! | a loop over steps, for every rung | `many` |
-//! | what a step is given and what is kept of it | [`motion`] |
+//! | what a step is given and what is kept of it | `motion` |
 //! | joints of a rung step by step; slips in arrays | `rung`, `slips` |
 //! | arrays of steps side by side, runtime choice of the instruction set | `lanes` |
-#![deny(unsafe_code)]
-
-pub mod joints;
+mod joints;
 mod lanes;
 mod many;
-pub mod motion;
+mod motion;
 mod rung;
 mod slips;
 
 pub use joints::{JointError, Joints};
-pub use many::Lanes;
-pub use motion::{Columns, Counts, Motion};
+pub use many::{Lanes, StepPart};
+pub use motion::{Columns, Counts, Motion, State, StepEvent};

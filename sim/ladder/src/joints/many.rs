@@ -1,11 +1,13 @@
 //! Joints of one rung, and the loops that know it.
 
-use crate::lanes::{self, LEAST_LANES};
-use crate::motion::{Columns, Counts};
-use crate::rung::OfRung;
+use crate::joints::lanes::{self, LEAST_LANES};
+use crate::joints::motion::{Columns, Counts, State, StepEvent};
+use crate::joints::rung::OfRung;
 use crepitus_model::joint::SlipLane;
 use crepitus_model::solver::{JointVisitor, Solver, with_joint};
-use crepitus_model::{Phase, Real, Settings, SettingsError, ShaftStep, StickSlip, Validated};
+use crepitus_model::{
+    Phase, Real, Settings, SettingsError, ShaftStep, StepCoefficients, StickSlip, Validated,
+};
 use std::any::Any;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -21,7 +23,15 @@ pub(crate) struct Each<J, F> {
     /// Shaft velocity at the end of the last step, rad/s.
     pub(crate) omega_rad_s: F,
     pub(crate) counts: Counts,
+    /// Events since they were taken, if they are recorded.
+    pub(crate) events: Option<Vec<StepEvent<F>>>,
 }
+
+/// A part of a step: its coefficients, and the shaft meanwhile.
+pub type StepPart<F> = (StepCoefficients<F>, ShaftStep<F>);
+
+/// Receiver of the events of a step and the state after it.
+pub(crate) type AfterStep<'a, F> = dyn FnMut(&[StepEvent<F>], &State<F>) + 'a;
 
 /// Joints of one rung, without its type.
 pub trait Many<F: Lanes>: Send {
@@ -36,6 +46,18 @@ pub trait Many<F: Lanes>: Send {
 
     /// Steps all joints by one step: a turn and a speed of all, or of each.
     fn step(&mut self, turns_rad: &[F], speeds_rad_s: &[F], is_of_each: bool);
+
+    /// Makes a step of a joint in parts.
+    fn step_in_parts(&mut self, n: usize, parts: &[StepPart<F>], after: &mut AfterStep<'_, F>);
+
+    /// Lets the speed of all shafts jump.
+    fn jump(&mut self, omega_rad_s: F);
+
+    /// Records events from now on.
+    fn record_events(&mut self);
+
+    /// Events of a joint that are recorded and not taken yet.
+    fn events(&mut self, n: usize) -> Option<&mut Vec<StepEvent<F>>>;
 
     /// Puts a joint in stick where the shaft is.
     fn restart(&mut self, n: usize, torque_nm: F, omega_rad_s: F);
@@ -148,15 +170,27 @@ impl<F> Work<'_, F> {
 impl<F: Lanes, J: StickSlip<F>> Each<J, F> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a loop around it holds its state")]
-    pub(crate) fn step(&mut self, turn_rad: F, speed_rad_s: F) {
+    pub(crate) fn step(&mut self, step: usize, turn_rad: F, speed_rad_s: F) {
         let shaft = ShaftStep {
             delta_phi_rad: turn_rad,
             omega_start_rad_s: self.omega_rad_s,
             omega_end_rad_s: speed_rad_s,
         };
-        let counts = &mut self.counts;
-        self.joint.step(&shaft, |event| counts.count(event.kind));
-        self.omega_rad_s = speed_rad_s;
+        self.step_on(step, &shaft);
+    }
+
+    /// Step number `step` of its arrays.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "a loop around it holds its state")]
+    pub(crate) fn step_on(&mut self, step: usize, shaft: &ShaftStep<F>) {
+        let (counts, events) = (&mut self.counts, &mut self.events);
+        self.joint.step(shaft, |event| {
+            counts.count(event.kind);
+            if let Some(events) = events {
+                events.push(StepEvent { step, event });
+            }
+        });
+        self.omega_rad_s = shaft.omega_end_rad_s;
     }
 
     /// Steps a slip on as long as the velocities surely do not meet, with its state in registers; returns the
@@ -197,7 +231,7 @@ impl<F: Lanes, J: StickSlip<F>> Each<J, F> {
             &work.turns_rad[range.clone()],
             &work.speeds_rad_s[range.clone()],
         );
-        let steps = turns.len().min(speeds.len());
+        let (first, steps) = (range.start, turns.len().min(speeds.len()));
         let (turns, speeds) = (&turns[..steps], &speeds[..steps]);
         let Columns {
             torque_nm,
@@ -244,7 +278,7 @@ impl<F: Lanes, J: StickSlip<F>> Each<J, F> {
                     continue;
                 }
             }
-            self.step(turns[n], speeds[n]);
+            self.step(first + n, turns[n], speeds[n]);
             if let Some(torque) = torque_nm.get_mut(n) {
                 *torque = self.joint.torque_nm();
             }

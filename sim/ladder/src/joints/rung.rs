@@ -1,10 +1,11 @@
 //! Joints of one rung, step by step together.
 
-use crate::lanes;
-use crate::many::{Each, Lanes, Many, Work, in_threads};
-use crate::motion::Counts;
-use crate::slips::{LANES, Slips};
+use crate::joints::lanes;
+use crate::joints::many::{AfterStep, Each, Lanes, Many, StepPart, Work, in_threads};
+use crate::joints::motion::{Counts, State, StepEvent};
+use crate::joints::slips::{LANES, Slips};
 use crepitus_model::StickSlip;
+use crepitus_model::joint::SlipLane;
 use std::any::Any;
 use std::array::from_fn;
 
@@ -54,6 +55,7 @@ impl<F: Lanes, J: StickSlip<F>> OfRung<J, F> {
             joint,
             omega_rad_s,
             counts: Counts::default(),
+            events: None,
         });
         self.torque_nm.push(F::ZERO);
         self.phase.push(0);
@@ -98,7 +100,7 @@ impl<F: Lanes, J: StickSlip<F>> OfRung<J, F> {
     /// A step of a joint by itself.
     fn step_alone(&mut self, n: usize, turn_rad: F, speed_rad_s: F) {
         self.catch_up(n);
-        self.joints[n].step(turn_rad, speed_rad_s);
+        self.joints[n].step(0, turn_rad, speed_rad_s);
         self.look_at(n);
     }
 
@@ -171,6 +173,53 @@ impl<F: Lanes, J: StickSlip<F> + Clone> Many<F> for OfRung<J, F> {
                 self.step_alone(n, turns_rad[n * stride], speed_rad_s);
             }
         }
+    }
+
+    fn step_in_parts(&mut self, n: usize, parts: &[StepPart<F>], after: &mut AfterStep<'_, F>) {
+        self.catch_up(n);
+        let each = &mut self.joints[n];
+        let whole = *each.joint.coefficients();
+        let recorded = each.events.replace(Vec::new());
+        for (coefficients, shaft) in parts {
+            each.joint.change_step(*coefficients);
+            each.step_on(0, shaft);
+            let (theta_rad, theta_dot_rad_s) = each.joint.motion();
+            let state = State {
+                phase: each.joint.phase(),
+                torque_nm: each.joint.torque_nm(),
+                theta_rad,
+                theta_dot_rad_s,
+            };
+            let events = each.events.get_or_insert_default();
+            after(events, &state);
+            events.clear();
+        }
+        each.joint.change_step(whole);
+        each.events = recorded;
+        self.look_at(n);
+    }
+
+    fn jump(&mut self, omega_rad_s: F) {
+        for n in 0..self.joints.len() {
+            self.catch_up(n);
+            self.joints[n].omega_rad_s = omega_rad_s;
+            self.look_at(n);
+            // Its next step tells the joint of the jump, which its lane would hide.
+            if J::HAS_LANES {
+                self.is_in_lane[n] = false;
+                self.slips[n / LANES].set(n % LANES, &SlipLane::default(), omega_rad_s);
+            }
+        }
+    }
+
+    fn record_events(&mut self) {
+        for each in &mut self.joints {
+            each.events.get_or_insert_default();
+        }
+    }
+
+    fn events(&mut self, n: usize) -> Option<&mut Vec<StepEvent<F>>> {
+        self.joints[n].events.as_mut()
     }
 
     fn restart(&mut self, n: usize, torque_nm: F, omega_rad_s: F) {

@@ -1,7 +1,7 @@
 //! Cost of a step of a joint, alone and among many: nanoseconds, and ratios of one run.
 //!
 //! ```sh
-//! cargo run --profile dist -p crepitus-joints --example many_joints
+//! cargo run --profile dist -p crepitus-ladder --example many_joints
 //! ```
 //!
 //! All run through the same motion, in turns; a row is the fastest of its rounds, which other work on the
@@ -13,7 +13,7 @@
     reason = "small numbers"
 )]
 
-use crepitus_joints::{Columns, Joints, Lanes, Motion};
+use crepitus_ladder::joints::{Columns, Joints, Lanes, Motion};
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Parameters, Settings};
 use std::hint::black_box;
