@@ -7,7 +7,7 @@ use crate::values;
 use crepitus_studies::sweep::axis::Values;
 use crepitus_studies::sweep::kind::Kind;
 use crepitus_studies::sweep::{
-    Axis, Cell, Design, Ended, Plan, Points, Receiver, Row, Sampled, Stop, run_all, totals,
+    Axis, Cell, Design, Ended, Plan, Points, Receiver, Row, Sampled, run_all, totals,
 };
 use numpy::IntoPyArray;
 use pyo3::exceptions::{PyOSError, PyValueError};
@@ -152,8 +152,14 @@ fn run<'py>(
             ended: Vec::new(),
             signals: Signals::new(),
         };
-        let run = |point, stop: &Stop| totals(&plan, point, stop);
-        run_all(once(0..plan.runs()), threads, &mut rows, run).map_err(|Failed(error)| error)?;
+        let threads = plan.threads(threads);
+        run_all(
+            once(0..plan.runs()),
+            threads,
+            &mut rows,
+            |points, stop, give| totals(&plan, points, stop, give),
+        )
+        .map_err(|Failed(error)| error)?;
         rows.ended.sort_by_key(|row| row.index);
         Ok(rows.ended)
     })?;

@@ -69,7 +69,8 @@ pub(crate) fn each<T: Sync, R: Send>(
     };
     let work = |(place, item)| (place, work(item));
     let threads = cores.min(items.len());
-    match pool(items.iter().enumerate(), threads, take, work) {
+    let give = |item, give: &mut dyn FnMut((usize, R))| give(work(item));
+    match pool(items.iter().enumerate(), threads, take, give) {
         Ok(ended) => {
             ended?;
         }
@@ -85,8 +86,9 @@ pub(crate) fn each<T: Sync, R: Send>(
     Ok(results.into_iter().map(|(_, result)| result).collect())
 }
 
-/// Applies `work` to the items on so many threads, or fewer where the system gives fewer. `take` gets
-/// each result as it comes, and is called without one at least 20 times a second; once it fails no
+/// Applies `work` to the items on so many threads, or fewer where the system gives fewer. `work` gives its
+/// results away one by one. `take` gets
+/// each as it comes, and is called without one at least 20 times a second; once it fails no
 /// further item is begun. Returns the number of threads, or the error of `take`.
 ///
 /// # Errors
@@ -95,7 +97,7 @@ pub(crate) fn pool<T: Send, R: Send, E>(
     items: impl Iterator<Item = T> + Send,
     threads: usize,
     mut take: impl FnMut(Option<R>) -> Result<(), E>,
-    work: impl Fn(T) -> R + Sync,
+    work: impl Fn(T, &mut dyn FnMut(R)) + Sync,
 ) -> io::Result<Result<usize, E>> {
     let items = Mutex::new(items);
     thread::scope(|scope| {
@@ -105,10 +107,11 @@ pub(crate) fn pool<T: Send, R: Send, E>(
             let (sender, items, work) = (sender.clone(), &items, &work);
             let started = thread::Builder::new().spawn_scoped(scope, move || {
                 // A poisoned lock: another thread panicked outside of its work.
-                while let Some(item) = items.lock().ok().and_then(|mut items| items.next()) {
-                    if sender.send(work(item)).is_err() {
-                        break;
-                    }
+                let mut is_wanted = true;
+                while is_wanted
+                    && let Some(item) = items.lock().ok().and_then(|mut items| items.next())
+                {
+                    work(item, &mut |result| is_wanted &= sender.send(result).is_ok());
                 }
             });
             match started {

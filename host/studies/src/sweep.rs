@@ -15,6 +15,7 @@
 //! | what a sweep is, and its parts | [`plan`] |
 //! | which numbers a row has | [`row`] |
 //! | the threads | [`pool`] |
+//! | points that are run together | `together` |
 //! | what lets a sweep go on after a kill, and on several computers | [`parts`] |
 //! | the folder of a sweep | [`store`] |
 //! | the file in the end | [`table`] |
@@ -33,15 +34,17 @@ mod running;
 pub mod store;
 mod store_error;
 pub mod table;
+mod together;
 mod traced;
 
 pub use axis::Axis;
 pub use design::{Design, DesignError, Points, Sampled};
 pub use parts::{Parts, missing};
 pub use plan::{Identity, Plan, Shard};
-pub use pool::{Ended, Receiver, Stop, run_all, totals};
+pub use pool::{Ended, Receiver, Stop, Threads, run_all};
 pub use row::{Cell, Row};
 pub use store::{Opening, Store};
 pub use store_error::StoreError;
 pub use table::{Format, Table, TableError, Written};
+pub use together::totals;
 pub use traced::{Traces, traced};

@@ -5,6 +5,7 @@
 //! out. What is observed on the way goes to an [`Observer`]; nothing of a run
 //! is kept in memory but its totals.
 
+mod accounting;
 mod any_device;
 mod command;
 mod coupled;
@@ -12,6 +13,7 @@ mod device;
 mod energy;
 mod event_driven;
 mod held_back;
+mod joined;
 mod lead;
 mod probe;
 mod reached;
@@ -27,6 +29,7 @@ mod watching;
 
 pub use coupled::{FELT_COLUMN, STRUCK_COLUMN};
 pub use held_back::HELD_BACK_COLUMN;
+pub use joined::Joined;
 pub use lead::Lead;
 pub use probe::{AddedTime, StepTime, step_times};
 pub use summary::{

@@ -278,15 +278,16 @@ fn run_points(
         None
     };
     let mut progress = Progress::new(store, wanted);
-    let outcome = run_all(
-        missing,
-        threads,
-        &mut progress,
-        |point, stop| match &traces {
-            Some(traces) => traced(plan, point, traces, stop),
-            None => totals(plan, point, stop),
-        },
-    );
+    let threads = plan.threads(threads);
+    let outcome = run_all(missing, threads, &mut progress, |mut points, stop, give| {
+        let Some(traces) = &traces else {
+            return totals(plan, points, stop, give);
+        };
+        points.try_for_each(|point| {
+            give(traced(plan, point, traces, stop)?);
+            Ok(())
+        })
+    });
     let ran = progress.finish().map_err(store_failure)?;
     match outcome {
         Ok(threads) => Ok((ran, threads)),

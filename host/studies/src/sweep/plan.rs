@@ -1,7 +1,9 @@
 //! Plan of a sweep: a scene, its overrides and a design.
 
 use crate::sweep::design::Design;
+use crate::sweep::pool::Threads;
 use crate::sweep::row::Row;
+use crate::sweep::together::most_at_once;
 use crepitus_files::output::hex;
 use crepitus_scene::run::RunError;
 use crepitus_scene::shipped::Source;
@@ -21,6 +23,8 @@ pub struct Plan {
     overrides: Overrides,
     design: Design,
     identity: Identity,
+    /// The most points of a thread at once.
+    at_once: u64,
 }
 
 /// Identity of a sweep; a folder with another one is refused.
@@ -140,9 +144,12 @@ impl Plan {
             source,
             overrides,
             design,
+            at_once: 1,
         };
         plan.identity.sha256 = plan.digest(&scene);
-        plan.check_points()?;
+        if let Some(scene) = plan.first_scene()? {
+            plan.at_once = most_at_once(&scene);
+        }
         Ok(plan)
     }
 
@@ -184,27 +191,34 @@ impl Plan {
         point: u64,
         run: impl FnOnce(&Scene) -> Result<Summary, RunError<E>>,
     ) -> Result<Row, E> {
+        match self.begin(point) {
+            Ok((row, scene)) => finish(row, || run(&scene)),
+            Err(row) => Ok(row),
+        }
+    }
+
+    /// Returns the row of a point, without results, and its scene; the row alone, with the reason, if there is
+    /// no scene.
+    pub(crate) fn begin(&self, point: u64) -> Result<(Row, Scene), Row> {
         let values = self.design.point(point);
         let paths = self.design.paths();
         let mut row = Row::of_point(point, &paths, &values, self.design.seed());
-        let scene = match self.scene_with(paths.into_iter().zip(values)) {
-            Ok(scene) => scene,
+        match self.scene_with(paths.into_iter().zip(values)) {
+            Ok(scene) => Ok((row, scene)),
             Err(e) => {
                 row.add(Err(e.to_string()));
-                return Ok(row);
+                Err(row)
             }
-        };
-        // A defect in one run is not to end a million others.
-        let outcome = catch_unwind(AssertUnwindSafe(|| run(&scene)));
-        row.add(match outcome {
-            Ok(Ok(summary)) => Ok(summary),
-            Ok(Err(RunError::Observer(e))) => return Err(e),
-            Ok(Err(RunError::Settings(e))) => Err(e.to_string()),
-            Ok(Err(RunError::Diverged(e))) => Err(e.to_string()),
-            Ok(Err(_)) => Err("the run failed".to_owned()),
-            Err(_) => Err("a defect of the program: the run panicked".to_owned()),
-        });
-        Ok(row)
+        }
+    }
+
+    /// Returns so many threads, with the number of points that each takes at once: several where they may be run
+    /// together.
+    pub const fn threads(&self, count: usize) -> Threads {
+        Threads {
+            count,
+            at_once: self.at_once,
+        }
     }
 
     fn scene_with<'p>(
@@ -217,8 +231,8 @@ impl Plan {
         self.source.scene(&overrides)
     }
 
-    /// Rejects a plan if none of some points is a valid scene; the error is that of the first.
-    fn check_points(&self) -> Result<(), SceneError> {
+    /// Returns the first valid scene of some points; the error is that of the first point.
+    fn first_scene(&self) -> Result<Option<Scene>, SceneError> {
         /// Number of points that are tried, spread over the sweep.
         const TRIED: u64 = 64;
         let tried = TRIED.min(self.runs());
@@ -226,11 +240,11 @@ impl Plan {
         let mut first = None;
         for point in points {
             match self.scene(point) {
-                Ok(_) => return Ok(()),
+                Ok(scene) => return Ok(Some(scene)),
                 Err(e) => first = first.or(Some(e)),
             }
         }
-        first.map_or(Ok(()), Err)
+        first.map_or(Ok(None), Err)
     }
 
     fn digest(&self, scene: &Scene) -> String {
@@ -245,6 +259,26 @@ impl Plan {
         add(&format!("{:?}", self.design));
         hex(&sha.finalize())
     }
+}
+
+/// Adds the outcome of a run to its row, or the reason of its failure.
+///
+/// # Errors
+/// Those of the observer.
+pub(crate) fn finish<E>(
+    mut row: Row,
+    run: impl FnOnce() -> Result<Summary, RunError<E>>,
+) -> Result<Row, E> {
+    // A defect in one run is not to end a million others.
+    row.add(match catch_unwind(AssertUnwindSafe(run)) {
+        Ok(Ok(summary)) => Ok(summary),
+        Ok(Err(RunError::Observer(e))) => return Err(e),
+        Ok(Err(RunError::Settings(e))) => Err(e.to_string()),
+        Ok(Err(RunError::Diverged(e))) => Err(e.to_string()),
+        Ok(Err(_)) => Err("the run failed".to_owned()),
+        Err(_) => Err("a defect of the program: the run panicked".to_owned()),
+    });
+    Ok(row)
 }
 
 #[cfg(test)]

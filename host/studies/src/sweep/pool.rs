@@ -1,9 +1,8 @@
 //! Thread pool of a sweep; rows come as runs end, nearly in the order of their points.
 
 use crate::parallel::pool;
-use crate::sweep::plan::Plan;
 use crate::sweep::row::Row;
-use crepitus_scene::{Observer, run};
+use crepitus_scene::Observer;
 use std::io;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,22 +33,32 @@ pub enum Ended {
     NoThread(io::Error),
 }
 
-/// Runs the points of `ranges` by `run` on `threads` threads: at least one, no more than
-/// points, and fewer where the system gives fewer. Returns how many there were.
+/// Threads of a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Threads {
+    /// Number of threads: at least one, no more than points, and fewer where the system gives fewer.
+    pub count: usize,
+    /// The most points that a thread takes at once.
+    pub at_once: u64,
+}
+
+/// Runs the points of `ranges` by `run`, which gives the row of each. Returns the number of threads.
 ///
 /// # Errors
 /// The receiver's, or of a run's own file; runs that have begun are abandoned then. Or there is
 /// no thread.
 pub fn run_all<R: Receiver>(
     ranges: impl IntoIterator<Item = Range<u64>, IntoIter: Send>,
-    threads: usize,
+    threads: Threads,
     receiver: &mut R,
-    run: impl Fn(u64, &Stop) -> Result<Row, Ended> + Sync,
+    run: impl Fn(Range<u64>, &Stop, &mut dyn FnMut(Row)) -> Result<(), Ended> + Sync,
 ) -> Result<usize, R::Error> {
     let ranges: Vec<_> = ranges.into_iter().collect();
     let count: u64 = ranges.iter().map(|range| range.end - range.start).sum();
     let most = usize::try_from(count).unwrap_or(MOST_THREADS);
-    let threads = threads.min(most).clamp(1, MOST_THREADS);
+    let of_each = count.div_ceil(threads.count.clamp(1, MOST_THREADS) as u64);
+    let at_once = threads.at_once.min(of_each).max(1);
+    let threads = threads.count.min(most).clamp(1, MOST_THREADS);
     let stop = Stop::default();
     let mut receive = |row: Option<Result<Row, Ended>>| -> Result<(), R::Error> {
         match row {
@@ -60,8 +69,17 @@ pub fn run_all<R: Receiver>(
         receiver.poll()
     };
     let take = |row| receive(row).inspect_err(|_| stop.0.store(true, Ordering::Relaxed));
-    let points = ranges.into_iter().flatten();
-    match pool(points, threads, take, |point| run(point, &stop)) {
+    let points = ranges.into_iter().flat_map(|range| {
+        let end = range.end;
+        let starts = range.step_by(usize::try_from(at_once).unwrap_or(usize::MAX));
+        starts.map(move |start| start..end.min(start.saturating_add(at_once)))
+    });
+    let run = |points, give: &mut dyn FnMut(Result<Row, Ended>)| {
+        if let Err(ended) = run(points, &stop, &mut |row| give(Ok(row))) {
+            give(Err(ended));
+        }
+    };
+    match pool(points, threads, take, run) {
         Ok(outcome) => outcome,
         Err(error) => Err(Ended::NoThread(error).into()),
     }
@@ -98,15 +116,6 @@ impl Observer for Unseen<'_> {
     }
 }
 
-/// Runs a point without a trace.
-///
-/// # Errors
-/// [`Ended::Stopped`].
-pub fn totals(plan: &Plan, point: u64, stop: &Stop) -> Result<Row, Ended> {
-    stop.check()?;
-    plan.run(point, |scene| run(scene, &mut Unseen(stop)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -134,19 +143,42 @@ mod tests {
     fn there_are_no_more_threads_than_points() {
         let seen = Mutex::new(BTreeSet::new());
         let ran = Mutex::new(BTreeSet::new());
-        let outcome = run_all([0..2, 5..6], usize::MAX, &mut Nobody, |point, _| {
-            ran.lock().unwrap().insert(point);
+        let threads = Threads {
+            count: usize::MAX,
+            at_once: 32,
+        };
+        let outcome = run_all([0..2, 5..6], threads, &mut Nobody, |points, _, give| {
+            assert_eq!(points.end - points.start, 1);
+            ran.lock().unwrap().insert(points.start);
             seen.lock()
                 .unwrap()
                 .insert(format!("{:?}", thread::current().id()));
             thread::sleep(Duration::from_millis(20));
-            Ok(Row {
-                index: point,
+            give(Row {
+                index: points.start,
                 cells: Vec::new(),
-            })
+            });
+            Ok(())
         });
         assert_eq!(outcome.ok(), Some(3));
         assert_eq!(ran.into_inner().unwrap(), BTreeSet::from([0, 1, 5]));
         assert!(seen.into_inner().unwrap().len() <= 3);
+    }
+
+    #[test]
+    fn points_are_taken_at_once_and_none_twice() {
+        let taken = Mutex::new(Vec::new());
+        let threads = Threads {
+            count: 2,
+            at_once: 8,
+        };
+        let outcome = run_all([0..19, 30..31], threads, &mut Nobody, |points, _, _| {
+            taken.lock().unwrap().push(points);
+            Ok(())
+        });
+        assert_eq!(outcome.ok(), Some(2));
+        let mut taken = taken.into_inner().unwrap();
+        taken.sort_by_key(|points| points.start);
+        assert_eq!(taken, [0..8, 8..16, 16..19, 30..31]);
     }
 }

@@ -1,6 +1,7 @@
 //! The device of a coupled run: sensor and pipeline, one tick at a time, behind
 //! one call, so that the loop around them is the same for all.
 
+use super::accounting::StepAccounting;
 use super::any_device::{Device, Span};
 use super::command::{Command, Stage};
 use super::held_back::TankTotals;
@@ -8,7 +9,6 @@ use super::reached::Reached;
 use super::recorder::{Happened, Heard, Recorder};
 use super::sensor::{Encoded, Ideal, Sensor};
 use super::stages::{self, BareStages, HasJoint, Rendering, Retiming};
-use super::stepping::StepAccounting;
 use super::tally::Tally;
 use super::watching::Watching;
 use crate::any_joint::{AnyJoint, Precise};
@@ -406,7 +406,9 @@ impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
             if is_last {
                 self.accounting.end_step(&seen, self.stages.joint());
             } else {
-                self.accounting.end_part(&seen, self.stages.joint());
+                let joint = self.stages.joint();
+                let stick = || (joint.torque_nm(), joint.theta_rad());
+                self.accounting.end_part(&seen, joint.phase(), stick);
             }
         }
         self.accounting.step_s = tick.length_s;

@@ -7,7 +7,7 @@
 //! `paper` and `physical` that is a missed event. A `frozen` slip lasts as long
 //! as it lasts and may do so by design, when the hand slows down meanwhile.
 
-use crepitus_model::{Convention, Settings};
+use crepitus_model::{Convention, Real, Settings};
 use std::f64::consts::TAU;
 
 /// Looks at a `frozen` slip in a swing of the object: its velocity there is
@@ -95,6 +95,24 @@ impl Lead {
         self.left = u32::try_from(left).unwrap_or(self.stride);
         let stride = usize::try_from(stride).unwrap_or(usize::MAX);
         (first..=steps).step_by(stride)
+    }
+
+    /// Counts steps in a slip of sense `sign`, with these velocities of shaft and object at their ends, and
+    /// looks where it is time.
+    pub(super) fn look_along<F: Real>(
+        &mut self,
+        sign: f64,
+        omega_rad_s: &[f64],
+        theta_dot_rad_s: &[F],
+    ) {
+        for step in self.looks_in(omega_rad_s.len() as u64) {
+            let place = usize::try_from(step - 1).unwrap_or(usize::MAX);
+            if let Some(omega) = omega_rad_s.get(place)
+                && let Some(theta_dot) = theta_dot_rad_s.get(place)
+            {
+                self.look(sign, *omega, theta_dot.to_f64());
+            }
+        }
     }
 
     /// A look at a slip of sense `sign`.

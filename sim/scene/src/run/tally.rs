@@ -67,6 +67,47 @@ pub(super) struct StickEnd {
     pub(super) omega_dot: f64,
 }
 
+/// The shaft in a stretch of stick, as all joints have it that stick meanwhile.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stretch {
+    dt_s: f64,
+    delta_phi: f64,
+    /// Velocity, rad/s, and acceleration, rad/s², at both ends.
+    from: (f64, f64),
+    to: (f64, f64),
+    /// ∫Ω² dt of a linear Ω.
+    omega_squared: f64,
+    /// ∫θ dt beyond the mean of its ends, of a cubic with their slopes.
+    theta_dt: f64,
+}
+
+impl Stretch {
+    /// A stretch of `dt_s`, in which the shaft turned by `delta_phi`, with velocity and acceleration at its ends.
+    #[inline]
+    pub(super) fn new(dt_s: f64, delta_phi: f64, from: (f64, f64), to: (f64, f64)) -> Self {
+        let (a, b) = (from.0, to.0);
+        Self {
+            dt_s,
+            delta_phi,
+            from,
+            to,
+            omega_squared: dt_s * (a * a + a * b + b * b) / 3.0,
+            theta_dt: dt_s * dt_s * (a - b) / 12.0,
+        }
+    }
+
+    /// The end of it with the object at `theta_rad`.
+    #[inline]
+    pub(super) fn end(&self, theta_rad: f64) -> StickEnd {
+        let (omega_rad_s, omega_dot) = self.to;
+        StickEnd {
+            theta_rad,
+            omega_rad_s,
+            omega_dot,
+        }
+    }
+}
+
 /// The running totals.
 #[derive(Clone, Debug)]
 pub(super) struct Tally {
@@ -164,6 +205,16 @@ impl Tally {
 
     /// A stretch of stick of `dt_s` in which the shaft turned by `delta_phi`.
     pub(super) fn stick(&mut self, dt_s: f64, delta_phi: f64, a: StickEnd, b: StickEnd) {
+        let shaft = |end: &StickEnd| (end.omega_rad_s, end.omega_dot);
+        let stretch = Stretch::new(dt_s, delta_phi, shaft(&a), shaft(&b));
+        self.stick_over(&stretch, a.theta_rad, b.theta_rad);
+    }
+
+    /// A stretch of stick, from one angle of the object to another.
+    pub(super) fn stick_over(&mut self, stretch: &Stretch, from_rad: f64, to_rad: f64) {
+        let Stretch {
+            dt_s, delta_phi, ..
+        } = *stretch;
         // Torn loose by a jump: what the stick would show there was not shown.
         if dt_s == 0.0 {
             return;
@@ -171,26 +222,19 @@ impl Tally {
         let p = &self.settings.parameters;
         let kr = p.stiffness_nm_per_rad;
         // ∫θ dt over a cubic with these ends and slopes.
-        let theta_dt = dt_s * (a.theta_rad + b.theta_rad) / 2.0
-            + dt_s * dt_s * (a.omega_rad_s - b.omega_rad_s) / 12.0;
+        let theta_dt = dt_s * (from_rad + to_rad) / 2.0 + stretch.theta_dt;
         let mut integral = kr * theta_dt;
-        let (mut from, mut to) = (kr * a.theta_rad, kr * b.theta_rad);
-        // ∫Ω² dt of a linear Ω.
-        let omega_squared = dt_s
-            * (a.omega_rad_s * a.omega_rad_s
-                + a.omega_rad_s * b.omega_rad_s
-                + b.omega_rad_s * b.omega_rad_s)
-            / 3.0;
-        let viscous = p.damping_nms_per_rad * omega_squared;
+        let (mut from, mut to) = (kr * from_rad, kr * to_rad);
+        let viscous = p.damping_nms_per_rad * stretch.omega_squared;
         self.energy.viscous_j += viscous;
         if self.settings.convention == Convention::Physical {
-            integral += p.inertia_kg_m2 * (b.omega_rad_s - a.omega_rad_s)
+            integral += p.inertia_kg_m2 * (stretch.to.0 - stretch.from.0)
                 + p.damping_nms_per_rad * delta_phi;
-            let inertial = |e: &StickEnd| {
-                p.inertia_kg_m2 * e.omega_dot + p.damping_nms_per_rad * e.omega_rad_s
+            let inertial = |(omega, omega_dot): (f64, f64)| {
+                p.inertia_kg_m2 * omega_dot + p.damping_nms_per_rad * omega
             };
-            from += inertial(&a);
-            to += inertial(&b);
+            from += inertial(stretch.from);
+            to += inertial(stretch.to);
             self.energy.work_in_j += viscous;
         } else {
             self.energy.convention_j += viscous;

@@ -10,6 +10,7 @@ use crepitus_studies::sweep::{
 use serde_json::json;
 use std::io;
 use std::iter::once;
+use std::ops::Range;
 use std::time::Instant;
 
 /// Runs that are measured.
@@ -25,7 +26,10 @@ pub(super) fn run(plan: &Plan, runs: u64, threads: usize, as_json: bool) -> Resu
         u64::try_from(place).unwrap_or(0)
     };
     let mut warm = Rows::new(WARM_UP);
-    let run = |i: u64, stop: &_| totals(plan, point(i), stop);
+    let run = |numbers: Range<u64>, stop: &_, give: &mut dyn FnMut(Row)| {
+        totals(plan, numbers.map(point), stop, give)
+    };
+    let threads = plan.threads(threads);
     let warm_up = WARM_UP.min(count);
     run_all(once(0..warm_up), threads, &mut warm, run).map_err(failure)?;
     let mut rows = Rows::new(count);
