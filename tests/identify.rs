@@ -120,6 +120,53 @@ fn what_one_recording_does_not_show_is_said() {
 }
 
 #[test]
+fn a_table_of_another_laboratory_is_identified() {
+    let folder = tempfile::tempdir().unwrap();
+    let swing = recorded(folder.path(), "swing", &[]);
+    let exported = folder.path().join("swing.csv");
+    let to = ["--format", "csv", "--out", exported.to_str().unwrap()];
+    let done = run(&[&["export", &swing][..], &to].concat());
+    assert!(done.status.success(), "{}", stderr(&done));
+    let text = fs::read_to_string(&exported).unwrap();
+    let (names, rows) = text.split_once('\n').unwrap();
+    let names: Vec<&str> = names.trim().split(',').collect();
+    let at = |name: &str| names.iter().position(|known| *known == name).unwrap();
+    let (t, angle) = (at("t_s"), at("angle_rad"));
+    // 500 Hz, in degrees, with decimal commas.
+    let lines: Vec<String> = (rows.lines().step_by(40))
+        .map(|row| {
+            let cells: Vec<f64> = (row.split(','))
+                .map(|cell| cell.parse().unwrap_or(0.0))
+                .collect();
+            format!("{:.4};{:.5}", cells[t], cells[angle].to_degrees()).replace('.', ",")
+        })
+        .collect();
+    let table = folder.path().join("table.csv");
+    let table = table.to_str().unwrap();
+    fs::write(table, format!("Zeit (s);phi (deg)\n{}\n", lines.join("\n"))).unwrap();
+    let verb = ["--json", "identify", table];
+    let arguments = [&verb[..], &["--angle", "phi (deg)"], &WEIGHT_IN_THE_BRACE].concat();
+    let done = run(&arguments);
+    assert!(done.status.success(), "{}", stderr(&done));
+    let printed: Value = serde_json::from_str(&stdout(&done)).unwrap();
+    for (key, truth) in [TRUTH[0], TRUTH[3], TRUTH[5], TRUTH[6]] {
+        let found = value(&printed["identified"], key);
+        let number = |name: &str| found[name].as_f64().unwrap_or_else(|| panic!("{found}"));
+        assert!(
+            (number("value") - truth).abs() <= number("half_width"),
+            "{key} {truth}: {found}"
+        );
+    }
+    // Too few rows a second for the strike of the teeth.
+    let slow: Vec<&String> = lines.iter().step_by(10).collect();
+    let text = slow
+        .iter()
+        .fold(String::new(), |text, line| text + line + "\n");
+    fs::write(table, format!("Zeit (s);phi (deg)\n{text}")).unwrap();
+    refuses(&arguments[1..], 2, "record at 200 Hz or more");
+}
+
+#[test]
 fn what_is_refused_has_its_exit_code_and_its_reason() {
     let folder = tempfile::tempdir().unwrap();
     let swing = recorded(folder.path(), "swing", &[]);

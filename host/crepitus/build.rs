@@ -1,4 +1,4 @@
-//! The commit that the program is built from, for the summaries of runs.
+//! The commit that the program is built from, for the summaries of runs, with compiler and target.
 
 use std::path::Path;
 use std::process::Command;
@@ -31,6 +31,14 @@ fn main() {
         if path.exists() {
             println!("cargo::rerun-if-changed={}", path.display());
         }
+    }
+    if let Ok(target) = std::env::var("TARGET") {
+        println!("cargo::rustc-env=CREPITUS_TARGET={target}");
+    }
+    let compiler = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
+    if let Ok(output) = Command::new(compiler).arg("--version").output() {
+        let version = String::from_utf8_lossy(&output.stdout);
+        println!("cargo::rustc-env=CREPITUS_RUSTC={}", version.trim());
     }
     let described = Command::new("git")
         .args([

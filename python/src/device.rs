@@ -1,48 +1,43 @@
 //! A device: requests, samples, recordings.
 
+use crate::blocks::{self, Blocks, Received};
 use crate::errors;
-use crate::following::{failure, follow};
+use crate::errors::failure;
+use crate::following::follow;
 use crate::knee::knee;
-use crate::received::{accounting_json, not_recorded, recorded, unsubscribed};
-use crate::samples::Samples;
+use crate::received;
 use crate::scene::Scene;
+use crate::timeline::Timeline;
+use crate::turns::{Held, Shared, Turn};
 use crepitus_client::connection::{Connection, OpenError, device_text, parameters};
 use crepitus_client::values::{full_name, parse_value, show_number};
 use crepitus_client::{Client, Error, Transport};
 use crepitus_protocol::State;
 use crepitus_protocol::parameters::PARAMETERS;
-use crepitus_recording::{Metadata, Recorder};
 use crepitus_scene::Knee;
 use crepitus_scene::Overrides;
+use crepitus_scene::preset::{self, Preset};
 use crepitus_scene::shipped;
-use crepitus_scene::values::{with_preset, with_scene};
+use crepitus_scene::values::{with_named, with_preset, with_scene};
+use crepitus_studies::experiment::finding::HEALTHY;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyInt};
 use serde_json::{Map, Value};
-use std::fs;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process;
-use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Longest duration of one call, s: a day.
 const MOST_S: f64 = 86_400.0;
 
-/// A connection to a device. Requests of several threads wait for each other, but `stop`
-/// ends what another thread does.
+/// Shortest block of a stream: that of the device.
+const SHORTEST_BLOCK: Duration = Duration::from_millis(1);
+
+/// A connection to a device. Requests of several threads take turns, also while one of them streams.
 #[pyclass(frozen, module = "crepitus._crepitus")]
-pub(crate) struct Device {
-    client: Mutex<Option<Client<Connection>>>,
-    /// Number of pending calls of `stop`.
-    stops: AtomicU32,
-    /// Stops so far: an arm that waited through one is refused.
-    stopped: AtomicU64,
-    stop: AtomicBool,
-    /// Id of the process that opened it.
-    process: u32,
-}
+pub(crate) struct Device(Arc<Shared>);
 
 #[pymethods]
 impl Device {
@@ -61,7 +56,7 @@ impl Device {
             shipped::scene(name, &Overrides::default())
         };
         let scene = scene.map(|scene| scene.get().checked.clone());
-        let client = py.detach(|| {
+        py.detach(|| {
             let scene = || scene.map_or_else(default, Ok);
             let connection =
                 Connection::open(name.as_deref(), program, scene).map_err(not_opened)?;
@@ -70,24 +65,24 @@ impl Device {
             } else {
                 connection
             };
-            Client::connect(connection).map_err(failure)
-        })?;
-        Ok(Self {
-            client: Mutex::new(Some(client)),
-            stops: AtomicU32::new(0),
-            stopped: AtomicU64::new(0),
-            stop: AtomicBool::new(false),
-            process: process::id(),
+            let mut client = Client::connect(connection).map_err(failure)?;
+            let tick = client.status().map_err(failure)?.tick;
+            let held = Held {
+                timeline: Timeline::new(tick, client.now()),
+                client,
+                expects_torque: false,
+            };
+            Ok(Self(Arc::new(Shared::new(held))))
         })
     }
 
     /// Disarms and closes the connection; closing again does nothing.
     fn close(&self, py: Python<'_>) -> PyResult<()> {
-        if process::id() != self.process {
+        if !self.0.is_ours() {
             return Ok(());
         }
         py.detach(|| {
-            let Some(client) = self.lock().take() else {
+            let Some(Held { client, .. }) = self.0.lock().take() else {
                 return Ok(());
             };
             if !client.is_connected() {
@@ -100,12 +95,18 @@ impl Device {
     /// Returns whether the connection is closed.
     #[getter]
     fn closed(&self, py: Python<'_>) -> bool {
-        py.detach(|| self.lock().is_none())
+        py.detach(|| self.0.lock().is_none())
+    }
+
+    /// Unix time at which `t_s` was zero, s.
+    #[getter]
+    fn zero_unix_s(&self, py: Python<'_>) -> PyResult<f64> {
+        self.0.work(py, |held| Ok(held.timeline.zero_unix_s))
     }
 
     /// Returns port, identities, status, faults, counters and times of the tasks (JSON).
     fn info(&self, py: Python<'_>) -> PyResult<String> {
-        self.request(py, |client| {
+        self.0.request(py, |client| {
             let status = client.status()?;
             let counters = client.counters()?;
             let times = client.times()?;
@@ -117,7 +118,7 @@ impl Device {
 
     /// Returns revision and values of the parameters (JSON).
     fn parameters(&self, py: Python<'_>) -> PyResult<(u32, String)> {
-        let (revision, values) = self.request(py, Client::parameters)?;
+        let (revision, values) = self.0.request(py, Client::parameters)?;
         let values: Map<String, Value> = values
             .iter()
             .map(|(parameter, value)| (full_name(parameter), parameters::named(parameter, value)))
@@ -146,7 +147,8 @@ impl Device {
                 .map_err(|error| PyValueError::new_err(format!("{name} = {text}: {error}")))?;
             changes.push((id, value));
         }
-        self.request(py, |client| client.set(&changes))
+        self.0
+            .request(py, |client| client.set(&changes))
             .map(|revision| revision.0)
     }
 
@@ -164,7 +166,7 @@ impl Device {
             (Some(scene), _) => Knee::Scene(Box::new(scene.get().checked.clone())),
             (None, what) => knee(&what.unwrap_or_default())?,
         };
-        self.work(py, |client| {
+        self.0.work(py, |Held { client, .. }| {
             let (base, now) = client.parameters().map_err(failure)?;
             let values = match &source {
                 Knee::Preset(preset) => with_preset(&now, preset, add),
@@ -181,6 +183,35 @@ impl Device {
         .map(|revision| revision.0)
     }
 
+    /// Applies a preset, or a healthy knee, with some of its parameters, in one commit; returns the new revision.
+    fn present(
+        &self,
+        py: Python<'_>,
+        preset: &str,
+        values: BTreeMap<String, f64>,
+    ) -> PyResult<u32> {
+        let preset = match preset::find(preset) {
+            Some(preset) => preset.clone(),
+            None if preset == HEALTHY => Preset::default(),
+            None => match knee(Path::new(preset))? {
+                Knee::Preset(preset) => *preset,
+                Knee::Scene(_) => {
+                    let message = format!("{preset}: expected a preset, got a scene");
+                    return Err(PyValueError::new_err(message));
+                }
+            },
+        };
+        self.0
+            .work(py, |Held { client, .. }| {
+                let (base, now) = client.parameters().map_err(failure)?;
+                let values = values.iter().map(|(name, value)| (name.as_str(), *value));
+                let values = with_named(&now, &preset, values)
+                    .map_err(|error| PyValueError::new_err(error.to_string()))?;
+                client.commit(base, &values).map_err(failure)
+            })
+            .map(|revision| revision.0)
+    }
+
     /// Sets some groups of parameters to their defaults; returns the new revision.
     fn reset(&self, py: Python<'_>, groups: Vec<String>) -> PyResult<u32> {
         if let Some(unknown) = groups
@@ -194,116 +225,118 @@ impl Device {
                 known.join(", ")
             )));
         }
-        self.request(py, |client| {
-            let (base, mut values) = client.parameters()?;
-            for parameter in PARAMETERS
-                .iter()
-                .filter(|p| groups.iter().any(|g| g == p.group))
-            {
-                values.set(parameter.id, parameter.default());
-            }
-            client.commit(base, &values)
-        })
-        .map(|revision| revision.0)
+        self.0
+            .request(py, |client| {
+                let (base, mut values) = client.parameters()?;
+                for parameter in PARAMETERS
+                    .iter()
+                    .filter(|p| groups.iter().any(|g| g == p.group))
+                {
+                    values.set(parameter.id, parameter.default());
+                }
+                client.commit(base, &values)
+            })
+            .map(|revision| revision.0)
     }
 
     /// Saves the parameters for the next start.
     fn save(&self, py: Python<'_>) -> PyResult<()> {
-        self.request(py, Client::save)
+        self.0.request(py, Client::save)
     }
 
     /// Sets the angle's zero here: hold the leg straight.
     fn zero(&self, py: Python<'_>) -> PyResult<()> {
-        self.request(py, Client::zero)
+        self.0.request(py, Client::zero)
     }
 
     /// Tests the enable lines, then turns torque on.
     fn arm(&self, py: Python<'_>) -> PyResult<()> {
-        let stopped = self.stopped.load(Ordering::SeqCst);
-        self.work(py, |client| {
-            if self.stopped.load(Ordering::SeqCst) != stopped {
+        let stops = self.0.stops();
+        self.0.work(py, |held| {
+            if self.0.stops() != stops {
                 return Err(errors::device(
                     "the device was stopped while this waited for its turn: arm it again if you want torque"
                         .to_owned(),
                 ));
             }
-            client.arm().map_err(failure)
+            held.client.arm().map_err(failure)?;
+            held.expects_torque = true;
+            Ok(())
         })
     }
 
     /// Turns torque off.
     fn disarm(&self, py: Python<'_>) -> PyResult<()> {
-        self.request(py, |client| {
-            client.disarm()?;
-            settle(client)
+        self.0.work(py, |held| {
+            held.expects_torque = false;
+            held.client.disarm().map_err(failure)?;
+            settle(&mut held.client).map_err(failure)
         })
     }
 
     /// Turns torque off at once, whichever program has armed the device; ends what another thread
     /// does with it.
     fn stop(&self, py: Python<'_>) -> PyResult<()> {
-        self.stopped.fetch_add(1, Ordering::SeqCst);
-        self.stops.fetch_add(1, Ordering::Relaxed);
-        self.stop.store(true, Ordering::Relaxed);
-        let result = self.request(py, |client| {
-            client.stop()?;
-            settle(client)
-        });
-        if self.stops.fetch_sub(1, Ordering::Relaxed) == 1 {
-            self.stop.store(false, Ordering::Relaxed);
-        }
-        result
+        self.0.note_stop();
+        self.0.work(py, |held| {
+            held.expects_torque = false;
+            held.client.stop().map_err(failure)?;
+            settle(&mut held.client).map_err(failure)
+        })
     }
 
     /// Clears the faults.
     fn clear_fault(&self, py: Python<'_>) -> PyResult<()> {
-        self.request(py, Client::clear_fault)
+        self.0.request(py, Client::clear_fault)
     }
 
     /// Returns whether this connection has armed the device, and it is still armed.
     #[getter]
     fn armed(&self, py: Python<'_>) -> PyResult<bool> {
-        self.work(py, |client| Ok(client.is_armed()))
+        self.0.request(py, |client| {
+            if client.is_armed() {
+                client.status()?;
+            }
+            Ok(client.is_armed())
+        })
     }
 
     /// Lets time pass, and keeps an armed device armed.
     fn wait(&self, py: Python<'_>, seconds: f64) -> PyResult<()> {
         let time = duration(seconds)?;
-        self.work(py, |client| follow(client, time, &self.stop, |_, _| Ok(())))
+        py.detach(|| follow(&Turn::take(&self.0)?, time, |_, _| Ok(true)))
     }
 
-    /// Streams samples for a duration, s, every n-th of them; returns them with the accounting
-    /// (JSON).
-    fn stream<'py>(
+    /// Streams samples for a duration, s, every n-th of them.
+    fn stream<'py>(&self, py: Python<'py>, seconds: f64, every: u64) -> PyResult<Received<'py>> {
+        blocks::stream(py, &self.0, duration(seconds)?, every)
+    }
+
+    /// Subscribes to samples in blocks of a duration, s, every n-th of them, for a while or without end.
+    fn blocks(
         &self,
-        py: Python<'py>,
-        seconds: f64,
+        py: Python<'_>,
+        block_s: f64,
+        seconds: Option<f64>,
         every: u64,
-    ) -> PyResult<(Bound<'py, PyDict>, String)> {
-        let time = duration(seconds)?;
-        let (samples, accounting) = self.work(py, |client| {
-            let mut samples = Samples::default();
-            let mut converter = crepitus_recording::Samples::default();
-            let mut revision = None;
-            client.subscribe().map_err(failure)?;
-            let result = follow(client, time, &self.stop, |client, block| {
-                if revision != Some(block.revision) {
-                    let (now, values) = client.parameters().map_err(failure)?;
-                    converter.set(&values);
-                    revision = Some(now);
-                }
-                for row in converter.rows(block) {
-                    if row.tick.is_multiple_of(every) {
-                        samples.push(&row);
-                    }
-                }
-                Ok(())
-            });
-            let accounting = client.accounting().map_or(Value::Null, accounting_json);
-            unsubscribed(client, result)?;
-            Ok((samples, accounting.to_string()))
-        })?;
-        Ok((samples.into_dict(py)?, accounting))
+    ) -> PyResult<Blocks> {
+        let left = seconds.map(duration).transpose()?;
+        let block = duration(block_s)?;
+        if block < SHORTEST_BLOCK {
+            return Err(PyValueError::new_err(format!(
+                "block_s: expected at least {} s, got {block_s}",
+                SHORTEST_BLOCK.as_secs_f64()
+            )));
+        }
+        Blocks::begin(py, &self.0, block, left, every)
+    }
+
+    /// Marks this moment in the samples; returns its time, s.
+    fn mark(&self, py: Python<'_>, text: String) -> PyResult<f64> {
+        self.0.work(py, |held| {
+            let tick = held.client.status().map_err(failure)?.tick;
+            Ok(held.timeline.mark(tick, text))
+        })
     }
 
     /// Records every sample for a duration, s; returns the accounting (JSON), or `None` if no
@@ -316,83 +349,12 @@ impl Device {
         title: &str,
     ) -> PyResult<Option<String>> {
         let time = duration(seconds)?;
-        self.work(py, |client| {
-            let handshake = client.handshake();
-            let metadata = Metadata::new(title, &handshake.comms, handshake.drive.as_ref());
-            let mut recorder = Recorder::create(&file, &metadata).map_err(not_recorded)?;
-            let result = recorded(client, &mut recorder, time, &self.stop);
-            let result = unsubscribed(client, result);
-            if recorder.totals().received == 0 {
-                drop(recorder);
-                fs::remove_file(&file)?;
-                return result.map(|()| None);
-            }
-            // What was recorded is kept, also after an error.
-            let totals = recorder.finish().map_err(not_recorded)?;
-            result?;
-            let totals = serde_json::to_string(&totals);
-            totals
-                .map(Some)
-                .map_err(|error| errors::device(error.to_string()))
-        })
+        py.detach(|| received::record(&Turn::take(&self.0)?, &file, title, time))
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {
-        let port = py.detach(|| self.lock().as_ref().map(Client::port));
+        let port = py.detach(|| self.0.lock().as_ref().map(|held| held.client.port()));
         format!("<Device {}>", port.as_deref().unwrap_or("closed"))
-    }
-}
-
-impl Device {
-    /// Locks the client; callers must have released the GIL.
-    fn lock(&self) -> MutexGuard<'_, Option<Client<Connection>>> {
-        // A panic has ended a request; the lease then ends the torque.
-        self.client.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Runs `work` with the client of an open device, without the GIL.
-    fn work<T: Send>(
-        &self,
-        py: Python<'_>,
-        work: impl FnOnce(&mut Client<Connection>) -> PyResult<T> + Send,
-    ) -> PyResult<T> {
-        if process::id() != self.process {
-            return Err(errors::device(
-                "this device was opened before a fork: open it in the process that uses it"
-                    .to_owned(),
-            ));
-        }
-        py.detach(|| match &mut *self.lock() {
-            Some(client) => work(client),
-            None => Err(errors::device(
-                "this device is closed: open it again".to_owned(),
-            )),
-        })
-    }
-
-    fn request<T: Send>(
-        &self,
-        py: Python<'_>,
-        request: impl FnOnce(&mut Client<Connection>) -> Result<T, Error> + Send,
-    ) -> PyResult<T> {
-        self.work(py, |client| request(client).map_err(failure))
-    }
-}
-
-impl Drop for Device {
-    fn drop(&mut self) {
-        let client = self
-            .client
-            .get_mut()
-            .unwrap_or_else(PoisonError::into_inner);
-        let Some(client) = client.take() else { return };
-        if process::id() != self.process {
-            // The other process still uses the port.
-            std::mem::forget(client);
-        } else if client.is_connected() && client.is_armed() {
-            // Without an answer its lease ends the torque.
-            let _ = client.close();
-        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Many joints that a Python program steps at once.
 
 use crate::joint::lock;
-use crate::rung::{Rung, Wanted, finite, numbers};
+use crate::rung::{Rung, StepLimits, Wanted, finite, finite_numbers};
 use crate::scene::Scene;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -11,7 +11,10 @@ use std::sync::Mutex;
 
 /// Joints that differ in parameters, stepped together.
 #[pyclass(frozen, module = "crepitus._crepitus")]
-pub(crate) struct Joints(Mutex<Rung>);
+pub(crate) struct Joints {
+    rung: Mutex<Rung>,
+    limits: StepLimits,
+}
 
 #[pymethods]
 impl Joints {
@@ -23,7 +26,8 @@ impl Joints {
         omega_rad_s: PyReadonlyArrayDyn<'_, f64>,
         parameters: Vec<(String, PyReadonlyArrayDyn<'_, f64>)>,
     ) -> PyResult<Self> {
-        let omegas = numbers("omega_rad_s", &omega_rad_s, |x| x)?;
+        let limits = StepLimits::of(scene);
+        let omegas = limits.speeds(&omega_rad_s)?;
         let mut values = Vec::new();
         for (name, array) in parameters {
             if array.len() != omegas.len() {
@@ -33,14 +37,15 @@ impl Joints {
                     array.len()
                 )));
             }
-            let of_each = numbers(&name, &array, |x| x)?;
+            let of_each = finite_numbers(&name, &array)?;
             values.push((name, of_each));
         }
-        Rung::new(scene, &omegas, &values).map(|rung| Self(Mutex::new(rung)))
+        let rung = Mutex::new(Rung::new(scene, &omegas, &values)?);
+        Ok(Self { rung, limits })
     }
 
     fn __len__(&self) -> PyResult<usize> {
-        Ok(lock(&self.0)?.len())
+        Ok(lock(&self.rung)?.len())
     }
 
     /// Advances all joints by one step, on one motion or (`of_each`) each on its own; returns the torques, N·m.
@@ -51,9 +56,8 @@ impl Joints {
         omega_rad_s: PyReadonlyArrayDyn<'py, f64>,
         of_each: bool,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let turns = numbers("dphi_rad", &dphi_rad, |x| x)?;
-        let speeds = numbers("omega_rad_s", &omega_rad_s, |x| x)?;
-        let mut rung = lock(&self.0)?;
+        let (turns, speeds) = self.limits.motions(&dphi_rad, &omega_rad_s)?;
+        let mut rung = lock(&self.rung)?;
         rung.step(&turns, &speeds, of_each)?;
         Ok(rung.torques_nm().into_pyarray(py))
     }
@@ -73,51 +77,54 @@ impl Joints {
             double: false,
             threads,
         };
-        let mut rung = lock(&self.0)?;
-        rung.steps(py, (&dphi_rad, &omega_rad_s), of_each, wanted)
+        let (turns, speeds) = self.limits.motions(&dphi_rad, &omega_rad_s)?;
+        lock(&self.rung)?.steps(py, (&turns, &speeds), of_each, wanted, |_| ())
     }
 
     /// Puts a joint in stick where its shaft is, with this torque (N·m) and speed (rad/s).
     fn restart(&self, joint: usize, torque_nm: f64, omega_rad_s: f64) -> PyResult<()> {
         finite("torque_nm", torque_nm)?;
-        finite("omega_rad_s", omega_rad_s)?;
-        lock(&self.0)?.restart(joint, torque_nm, omega_rad_s);
+        self.limits.speed("omega_rad_s", omega_rad_s)?;
+        lock(&self.rung)?.restart(joint, torque_nm, omega_rad_s);
         Ok(())
     }
 
     /// Returns joints with the same states.
     fn copy(&self) -> PyResult<Self> {
-        Ok(Self(Mutex::new(lock(&self.0)?.clone())))
+        Ok(Self {
+            rung: Mutex::new(lock(&self.rung)?.clone()),
+            limits: self.limits,
+        })
     }
 
     /// Torques, N·m.
     #[getter]
     fn torque_nm<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(lock(&self.0)?.torques_nm().into_pyarray(py))
+        Ok(lock(&self.rung)?.torques_nm().into_pyarray(py))
     }
 
     /// Phases: 0 in stick, -1 or +1 in slip.
     #[getter]
     fn phase<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i8>>> {
-        Ok(lock(&self.0)?.phases().to_vec().into_pyarray(py))
+        Ok(lock(&self.rung)?.phases().to_vec().into_pyarray(py))
     }
 
     /// Angles of the objects, rad.
     #[getter]
     fn theta_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(lock(&self.0)?.motions().0.into_pyarray(py))
+        Ok(lock(&self.rung)?.motions().0.into_pyarray(py))
     }
 
     /// Velocities of the objects, rad/s.
     #[getter]
     fn theta_dot_rad_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(lock(&self.0)?.motions().1.into_pyarray(py))
+        Ok(lock(&self.rung)?.motions().1.into_pyarray(py))
     }
 
     /// Events of each since it was made: breaks, sticks, reverses.
     #[getter]
     fn events<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArray1<u64>>; 3]> {
-        let counts = lock(&self.0)?.counts();
+        let counts = lock(&self.rung)?.counts();
         let breaks: Vec<u64> = counts.iter().map(|of| of.breaks).collect();
         let sticks: Vec<u64> = counts.iter().map(|of| of.sticks).collect();
         let reverses: Vec<u64> = counts.iter().map(|of| of.reverses).collect();

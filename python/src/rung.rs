@@ -3,6 +3,7 @@
 use crate::scene::Scene;
 use crate::signals::Signals;
 use crepitus_ladder::joints::{Columns, Counts, JointError, Joints, Lanes, Motion};
+use crepitus_model::render::input_check::InputLimits;
 use crepitus_model::{Parameters, Real, Settings};
 use crepitus_scene::scene::{Precision, SolverChoice};
 use numpy::{Element, IntoPyArray, PyReadonlyArrayDyn};
@@ -127,25 +128,27 @@ impl Rung {
         stepped.map_err(shape)
     }
 
-    /// Steps all joints through arrays; returns columns by name, joint by joint.
+    /// Steps all joints through arrays of motions that have been checked; returns columns by name, joint by joint.
+    /// `on_torques` gets the torques, N·m.
     pub(crate) fn steps<'py>(
         &mut self,
         py: Python<'py>,
-        (dphi_rad, omega_rad_s): (&PyReadonlyArrayDyn<'py, f64>, &PyReadonlyArrayDyn<'py, f64>),
+        (turns_rad, speeds_rad_s): (&[f64], &[f64]),
         is_of_each: bool,
         wanted: Wanted,
+        on_torques: impl FnOnce(&mut dyn Iterator<Item = f64>),
     ) -> PyResult<Bound<'py, PyDict>> {
         match self {
             Self::Double(joints) => {
-                let turns = numbers("dphi_rad", dphi_rad, |x| x)?;
-                let speeds = numbers("omega_rad_s", omega_rad_s, |x| x)?;
-                let states = steps(py, joints, &turns, &speeds, is_of_each, wanted)?;
+                let states = steps(py, joints, turns_rad, speeds_rad_s, is_of_each, wanted)?;
+                on_torques(&mut states.torque_nm.iter().copied());
                 states.into_dict(py, |numbers| numbers)
             }
             Self::Single(joints) => {
-                let turns = numbers("dphi_rad", dphi_rad, narrow)?;
-                let speeds = numbers("omega_rad_s", omega_rad_s, narrow)?;
+                let of = |numbers: &[f64]| numbers.iter().copied().map(narrow).collect::<Vec<_>>();
+                let (turns, speeds) = (of(turns_rad), of(speeds_rad_s));
                 let states = steps(py, joints, &turns, &speeds, is_of_each, wanted)?;
+                on_torques(&mut states.torque_nm.iter().copied().map(f64::from));
                 if wanted.double {
                     states.into_dict(py, |numbers| numbers.into_iter().map(f64::from).collect())
                 } else {
@@ -315,29 +318,110 @@ pub(crate) fn finite(name: &str, x: f64) -> PyResult<()> {
     }
 }
 
-/// Returns the numbers of an array; rejects it if one is not finite, before any step is done. A copy: while
-/// steps are made without the GIL, others may write to the array.
-pub(crate) fn numbers<F: Copy>(
+/// Fastest shaft of a joint, rad/s: what the device's input check takes.
+fn most_speed_rad_s(step_s: f64) -> f64 {
+    InputLimits::device(step_s).speed_rad_s
+}
+
+/// Rounding that a turn may be beyond its limit by, as a share of it.
+const ROUNDING: f64 = 1e-9;
+
+/// Largest motion of a shaft in a step.
+#[derive(Clone, Copy)]
+pub(crate) struct StepLimits {
+    pub(crate) step_s: f64,
+    turn_rad: f64,
+    speed_rad_s: f64,
+}
+
+impl StepLimits {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let step_s = scene.checked.step_s();
+        let speed_rad_s = most_speed_rad_s(step_s) * (1.0 + ROUNDING);
+        Self {
+            step_s,
+            turn_rad: speed_rad_s * step_s,
+            speed_rad_s,
+        }
+    }
+
+    /// Rejects a turn in a step, rad, that no shaft makes.
+    pub(crate) fn turn(&self, name: &str, turn_rad: f64) -> PyResult<()> {
+        if turn_rad.abs() <= self.turn_rad {
+            return Ok(());
+        }
+        finite(name, turn_rad)?;
+        let (most, step_s) = (most_speed_rad_s(self.step_s), self.step_s);
+        Err(PyValueError::new_err(format!(
+            "{name}: expected at most ±{:.3e} rad in a step of {step_s} s, which is {most} rad/s, got {turn_rad} rad: give the \
+             turn of one step, in rad, or make more steps",
+            most * step_s
+        )))
+    }
+
+    /// Rejects a speed, rad/s, that no shaft has.
+    pub(crate) fn speed(&self, name: &str, speed_rad_s: f64) -> PyResult<()> {
+        if speed_rad_s.abs() <= self.speed_rad_s {
+            return Ok(());
+        }
+        finite(name, speed_rad_s)?;
+        let most = most_speed_rad_s(self.step_s);
+        Err(PyValueError::new_err(format!(
+            "{name}: expected at most ±{most} rad/s, got {speed_rad_s}: no joint moves faster; check its unit"
+        )))
+    }
+
+    /// Returns the turns and the speeds of arrays, checked before any step is made. Copies: while steps are made without the
+    /// GIL, others may write to the arrays.
+    pub(crate) fn motions(
+        &self,
+        dphi_rad: &PyReadonlyArrayDyn<'_, f64>,
+        omega_rad_s: &PyReadonlyArrayDyn<'_, f64>,
+    ) -> PyResult<(Vec<f64>, Vec<f64>)> {
+        let turn = |name: &str, x| self.turn(name, x);
+        let speed = |name: &str, x| self.speed(name, x);
+        Ok((
+            numbers("dphi_rad", dphi_rad, self.turn_rad, turn)?,
+            numbers("omega_rad_s", omega_rad_s, self.speed_rad_s, speed)?,
+        ))
+    }
+
+    /// Returns the speeds of an array.
+    pub(crate) fn speeds(&self, omega_rad_s: &PyReadonlyArrayDyn<'_, f64>) -> PyResult<Vec<f64>> {
+        let speed = |name: &str, x| self.speed(name, x);
+        numbers("omega_rad_s", omega_rad_s, self.speed_rad_s, speed)
+    }
+}
+
+/// Returns the numbers of an array; `check` has the error of one that is beyond the limit, or not a number.
+fn numbers(
     name: &str,
     array: &PyReadonlyArrayDyn<'_, f64>,
-    of: impl Fn(f64) -> F,
-) -> PyResult<Vec<F>> {
+    most: f64,
+    check: impl Fn(&str, f64) -> PyResult<()>,
+) -> PyResult<Vec<f64>> {
     // One pass without a branch, and a second one for the message.
-    let mut are_finite = true;
+    let mut are_within = true;
     let mut keep = |x: &f64| {
-        are_finite &= x.is_finite();
-        of(*x)
+        are_within &= x.abs() <= most;
+        *x
     };
-    let numbers = match array.as_slice() {
+    let numbers: Vec<f64> = match array.as_slice() {
         Ok(slice) => slice.iter().map(&mut keep).collect(),
         Err(_) => array.as_array().iter().map(&mut keep).collect(),
     };
-    if are_finite {
-        return Ok(numbers);
+    if !are_within {
+        for (n, x) in numbers.iter().enumerate() {
+            check(&format!("{name}[{n}]"), *x)?;
+        }
     }
-    let place = array.as_array();
-    match place.iter().enumerate().find(|(_, x)| !x.is_finite()) {
-        Some((n, x)) => finite(&format!("{name}[{n}]"), *x).map(|()| numbers),
-        None => Ok(numbers),
-    }
+    Ok(numbers)
+}
+
+/// Returns the numbers of an array; rejects it if one is not finite.
+pub(crate) fn finite_numbers(
+    name: &str,
+    array: &PyReadonlyArrayDyn<'_, f64>,
+) -> PyResult<Vec<f64>> {
+    numbers(name, array, f64::MAX, finite)
 }

@@ -64,6 +64,10 @@ impl Default for Samples {
 }
 
 impl Samples {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.rows == 0
+    }
+
     pub(crate) fn push(&mut self, row: &Row) {
         self.rows += 1;
         for (_, values) in &mut self.columns {

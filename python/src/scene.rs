@@ -3,7 +3,8 @@
 use crate::{errors, values};
 use crepitus_scene::shipped::Source;
 use crepitus_scene::{Overrides, SceneError};
-use pyo3::exceptions::PyTypeError;
+use numpy::PyReadonlyArray1;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyType};
 use std::path::PathBuf;
@@ -164,6 +165,41 @@ impl Scene {
         })
     }
 
+    /// This scene with a motion of samples, s and rad, for as long as they last.
+    fn with_motion(
+        &self,
+        time_s: PyReadonlyArray1<'_, f64>,
+        angle_rad: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Self> {
+        let numbers = |array: &PyReadonlyArray1<'_, f64>| -> toml::Value {
+            array.as_array().iter().copied().collect::<Vec<_>>().into()
+        };
+        let mut text: toml::Table = (self.source.text)
+            .parse()
+            .map_err(|error: toml::de::Error| PyValueError::new_err(error.to_string()))?;
+        let times = time_s.as_array();
+        let duration_s = match (times.first(), times.last()) {
+            (Some(first), Some(last)) => last - first,
+            _ => 0.0,
+        };
+        let mut motion = toml::Table::new();
+        motion.insert("kind".to_owned(), "recording".into());
+        motion.insert("time_s".to_owned(), numbers(&time_s));
+        motion.insert("angle_rad".to_owned(), numbers(&angle_rad));
+        text.insert("motion".to_owned(), motion.into());
+        if duration_s > 0.0 && duration_s.is_finite() {
+            text.insert("duration_s".to_owned(), duration_s.into());
+        }
+        let text =
+            toml::to_string(&text).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let mut overrides = self.overrides.clone();
+        let is_replaced =
+            |path: &str| path == "duration_s" || path.split('.').next() == Some("motion");
+        overrides.set.retain(|(path, _)| !is_replaced(path));
+        let source = Source::of_text(self.source.file.clone(), text);
+        Self::of(source, true, overrides)
+    }
+
     /// The scene as it runs, as TOML: changes applied, every default written out.
     #[getter]
     fn toml(&self) -> &str {
@@ -236,6 +272,11 @@ impl Scene {
             scene.step_s(),
             self.effects().join(", ")
         )
+    }
+
+    fn _repr_html_(slf: Bound<'_, Self>) -> PyResult<Bound<'_, PyAny>> {
+        let html = slf.py().import("crepitus._html")?;
+        html.call_method1("scene", (slf,))
     }
 
     fn __eq__(&self, other: &Self) -> bool {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import threading
 from typing import Any
 
@@ -131,11 +132,108 @@ def test_bad_steps_do_nothing(turns: Any, omega: Any) -> None:
     assert joint.torque_nm == before
 
 
-def test_no_steps_and_huge_steps() -> None:
+def test_no_steps_are_none() -> None:
+    assert len(Joint().steps([], [])["torque_nm"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("turn", "omega", "match"),
+    [
+        (10.0, 1.0, r"2\.500e-3 rad in a step of 0\.00005 s.*turn of one step"),
+        (1e300, 1e300, "50 rad/s"),
+        (1e-5, 51.0, "omega_rad_s"),
+        (-0.0026, 1.0, "dphi_rad"),
+    ],
+)
+def test_steps_that_no_shaft_makes_are_refused(turn: float, omega: float, match: str) -> None:
+    joint, many = Joint(), crepitus.Joints(count=2)
+    joint.step(1e-5, 0.2)
+    before = joint.torque_nm
+    for step in (
+        lambda: joint.step(turn, omega),
+        lambda: joint.steps([1e-5, turn], [1.0, omega]),
+        lambda: many.step(turn, omega),
+        lambda: many.steps([1e-5, turn], [1.0, omega]),
+    ):
+        with pytest.raises(ValueError, match=match):
+            step()
+    assert joint.torque_nm == before
+    # As fast as the device takes it, they are steps.
+    joint.step(50.0 * STEP_S, 50.0)
+    with pytest.raises(ValueError, match="50 rad/s"):
+        Joint(omega_rad_s=60.0)
+
+
+def test_copies_go_on_by_themselves() -> None:
+    turns, omega = motion(2_000)
+    joint = Joint(omega_rad_s=omega[0])
+    joint.steps(turns[:1_000], omega[1:1_001])
+    copies = [joint.copy(), copy.copy(joint), copy.deepcopy({"a": joint})["a"]]
+    expected = joint.steps(turns[1_000:], omega[1_001:])["torque_nm"].tolist()
+    for other in copies:
+        assert other.steps(turns[1_000:], omega[1_001:])["torque_nm"].tolist() == expected
+        assert other.events == joint.events and other.returned_j == joint.returned_j
+    many = copy.deepcopy(crepitus.Joints(count=3))
+    assert len(many) == 3
+
+
+def test_a_shaken_joint_pushes_and_says_so_before() -> None:
+    """The joint without a guard at 20 Hz and ±0.02 rad."""
     joint = Joint()
-    assert len(joint.steps([], [])["torque_nm"]) == 0
-    torque_nm = joint.step(1e300, 1e300)
-    assert abs(torque_nm) <= 0.4
+    passivity = joint.passivity()
+    assert passivity.stored_j == pytest.approx(0.4**2 / 800.0)
+    assert passivity.needed_damping_nms_per_rad == pytest.approx(0.5 * 400.0 * STEP_S)
+    assert joint.passivity(2.0).needed_damping_nms_per_rad == pytest.approx(2.5 * 400.0 * STEP_S)
+    most = passivity.most_acceleration_rad_s2
+    assert most is not None and not joint.may_push(0.99 * most) and joint.may_push(1.01 * most)
+    assert joint.may_push(0.6 * most, 0.6 * (passivity.most_velocity_step_rad_s or 0.0))
+
+    def shaken_j(amplitude_rad: float, hz: float) -> tuple[float, float, float]:
+        joint = Joint(omega_rad_s=amplitude_rad * 2.0 * np.pi * hz)
+        time_s = np.arange(80_001) * STEP_S
+        angle_rad = amplitude_rad * np.sin(2.0 * np.pi * hz * time_s)
+        omega = amplitude_rad * 2.0 * np.pi * hz * np.cos(2.0 * np.pi * hz * time_s)
+        turns = np.diff(angle_rad)
+        torque_nm = np.concatenate([[0.0], joint.steps(turns, omega[1:])["torque_nm"][:-1]])
+        work_j = np.concatenate([[0.0], np.cumsum(torque_nm * turns)])
+        returned_j = (np.maximum.accumulate(work_j) - work_j).max()
+        assert joint.returned_j == pytest.approx(returned_j, abs=1e-12)
+        sampled_j = passivity.needed_damping_nms_per_rad * float((turns**2).sum()) / STEP_S
+        return float(work_j[-1]), joint.returned_j, passivity.stored_j + sampled_j
+
+    work_j, returned_j, bound_j = shaken_j(0.02, 20.0)
+    assert joint.may_push(0.02 * (2.0 * np.pi * 20.0) ** 2)
+    assert work_j == pytest.approx(-0.23, abs=0.02) and returned_j > 1.5 * bound_j
+    # As far, and so slowly that no slip is left behind.
+    assert not joint.may_push(0.02 * (2.0 * np.pi * 2.0) ** 2)
+    work_j, returned_j, bound_j = shaken_j(0.02, 2.0)
+    assert work_j > 0.0 and returned_j <= bound_j
+    # One by one, too.
+    alone = Joint()
+    for _ in range(100):
+        alone.step(1e-5, 0.2)
+    for _ in range(50):
+        alone.step(-1e-5, -0.2)
+    assert 0.0 < alone.returned_j <= passivity.stored_j
+    alone.restart()
+    assert alone.returned_j == 0.0
+
+
+@pytest.mark.parametrize("convention", ["paper", "physical"])
+def test_where_no_limit_is_known_it_may_push(convention: str) -> None:
+    joint = Joint(convention=convention)
+    assert joint.passivity().most_acceleration_rad_s2 is None
+    assert joint.passivity().most_velocity_step_rad_s is None and joint.may_push(0.0)
+
+
+@pytest.mark.parametrize("bad", [float("nan"), float("inf"), -1.0])
+def test_what_no_motion_has_is_no_question(bad: float) -> None:
+    joint = Joint()
+    with pytest.raises(ValueError, match="delay_steps"):
+        joint.passivity(bad)
+    if not np.isfinite(bad):
+        with pytest.raises(ValueError, match="acceleration_rad_s2"):
+            joint.may_push(bad)
 
 
 def test_views_and_other_types_are_read_right() -> None:

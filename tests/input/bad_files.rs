@@ -135,7 +135,7 @@ fn the_list_has_every_argument_of_the_program() {
     assert!(listed.is_empty(), "cases of no argument: {listed:?}");
 }
 
-/// The bad files, and `ok.crepitus`, a recording, in a folder.
+/// The bad files, and `abx.toml`, a protocol, in a folder.
 fn bad_files(folder: &Path) -> UnixListener {
     let at = |name: &str| folder.join(name);
     fs::create_dir(at("folder")).unwrap();
@@ -150,6 +150,8 @@ fn bad_files(folder: &Path) -> UnixListener {
     fs::write(at("forbidden"), "of no use").unwrap();
     fs::set_permissions(at("forbidden"), fs::Permissions::from_mode(0o000)).unwrap();
     symlink("nothing", at("dangling")).unwrap();
+    let abx = "title = 'A or B'\n[abx]\ntrials = 2\na = {}\nb = { preset = 'coarse' }";
+    fs::write(at("abx.toml"), abx).unwrap();
     UnixListener::bind(at("socket")).unwrap()
 }
 
@@ -188,6 +190,7 @@ fn fault(folder: &Path, number: usize, case: (&str, bool, usize)) -> Option<Stri
             "{}" => place(name),
             "{ok}" => place("ok.crepitus"),
             "{csv}" => place("chirp.csv"),
+            "{abx}" => place("abx.toml"),
             "{out}" => place(&format!("out-{number}")),
             word => word.to_owned(),
         })

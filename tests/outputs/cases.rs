@@ -1,7 +1,7 @@
 //! Every verb, and every flag with a path: what is written there, or that nothing is.
 
-use crate::recording;
 use crate::support::crepitus;
+use crate::{recording, study};
 use std::path::Path;
 use std::process::{Output, Stdio};
 
@@ -88,7 +88,7 @@ const fn file(
     }
 }
 
-/// Every verb and flag that writes. `RECORDING` stands for one.
+/// Every verb and flag that writes. `RECORDING` and `STUDY` stand for one.
 pub(super) const CASES: &[Case] = &[
     folder(
         "run",
@@ -105,6 +105,12 @@ pub(super) const CASES: &[Case] = &[
     ),
     folder("sweep", SHARD, &["sweep.json", "parts"]),
     folder("report", REPORT, &["report.html", "summary.json"]),
+    folder(
+        "experiment",
+        &["results", "STUDY"],
+        &["report.html", "summary.json", "trials-1.csv"],
+    ),
+    file("experiment", &["new", "abx"], "", "mine.toml"),
     file("report", &["RECORDING", "--out", "o"], "--wav", "knee.wav"),
     file("export", EXPORT, "--out", "out.csv"),
     file("knee", &["--language", "en"], "--out", "knee.html"),
@@ -169,6 +175,11 @@ pub(super) const CASES: &[Case] = &[
         is_slow: true,
         ..file("identify", WEIGHT, "--scene-out", "brace.toml")
     },
+    slow("fit", &["none"], &["fit.json", "residual.csv", "knee.toml"]),
+    Case {
+        is_slow: true,
+        ..file("fit", &["none"], "--scene-out", "knee.toml")
+    },
     slow(
         "identify-actuator",
         &["--device", "none", "--moving-mass-g", "60"],
@@ -213,14 +224,16 @@ pub(super) const OTHERS: [&str; 16] = [
 ];
 
 /// Options with a path that is read.
-pub(super) const READ: [&str; 7] = [
+pub(super) const READ: [&str; 9] = [
     "--points",
+    "--again",
     "--merge",
     "--from",
     "--from-added",
     "--replay",
     "--overlay",
     "--sessions",
+    "--experiments",
 ];
 
 impl Case {
@@ -240,11 +253,11 @@ impl Case {
             .stdin(Stdio::null());
         command.env("CREPITUS_PRESETS", place);
         for argument in self.arguments {
-            if *argument == "RECORDING" {
-                command.arg(recording());
-            } else {
-                command.arg(argument);
-            }
+            match *argument {
+                "RECORDING" => command.arg(recording()),
+                "STUDY" => command.arg(study()),
+                argument => command.arg(argument),
+            };
         }
         let path = match self.place {
             Place::Folder(_) => place.to_owned(),

@@ -72,6 +72,29 @@ fn recording() -> &'static Path {
     &MADE.get_or_init(make).1
 }
 
+/// The folder of a study, made once.
+fn study() -> &'static Path {
+    use crepitus_studies::experiment::protocol::{EXAMPLES, Known};
+    use crepitus_studies::experiment::store::{Beginning, Store};
+    static MADE: OnceLock<(tempfile::TempDir, PathBuf)> = OnceLock::new();
+    let make = || {
+        let home = tempfile::tempdir().unwrap();
+        let (protocol, study) = (home.path().join("p.toml"), home.path().join("study"));
+        fs::write(&protocol, EXAMPLES[2]).unwrap();
+        let beginning = Beginning {
+            protocol: &protocol,
+            participant: "P1",
+            seed: None,
+            has_consented: false,
+            unix_s: 7,
+        };
+        let store = Store::create(&study).unwrap();
+        store.begin(beginning, Known::SHIPPED).unwrap();
+        (home, study)
+    };
+    &MADE.get_or_init(make).1
+}
+
 /// The verbs of the program.
 fn verbs() -> Vec<String> {
     let help = stdout(&run(&["--help"]));

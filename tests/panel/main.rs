@@ -5,6 +5,7 @@
 mod access;
 mod class;
 mod devices;
+mod experiments;
 mod hand;
 mod lessons;
 #[path = "../support/panel.rs"]
@@ -384,6 +385,10 @@ fn what_cannot_start_says_why() {
         (
             vec!["panel", "--device", "sim", "--sessions", "Cargo.toml"],
             "--sessions: cannot store anything there",
+        ),
+        (
+            vec!["panel", "--device", "sim", "--experiments", "Cargo.toml"],
+            "crepitus experiment new threshold",
         ),
         (
             vec!["panel", "--device", "sim", "--sessions", "/dev/full"],

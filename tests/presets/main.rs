@@ -1,6 +1,7 @@
 //! Presets as a teacher uses them: listed, applied, saved, compared, reset.
 #![cfg(target_os = "linux")]
 
+mod judged;
 mod naming;
 mod own;
 #[path = "../support/mod.rs"]

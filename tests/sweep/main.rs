@@ -1,6 +1,7 @@
 //! `crepitus sweep`: the rows are those of single runs, and the same whatever happens on
 //! the way.
 
+mod again;
 mod killed;
 #[path = "../support/mod.rs"]
 mod support;
@@ -225,6 +226,24 @@ fn the_cost_is_estimated() {
     assert!((ratio - 1.0).abs() < 1e-9, "{told}");
     assert!(number("bytes") > 1e7);
     assert_eq!(names(home.path()), Vec::<String>::new());
+}
+
+/// Runs that take long do not make an estimate take long: none is begun after 5 s.
+#[test]
+fn an_estimate_has_a_bound() {
+    let home = tempfile::tempdir().unwrap();
+    let begun = std::time::Instant::now();
+    // Each run about a second of a debug build, and a thousand of them.
+    let arguments = "everything --vary duration_s=1:2:lin1000 --estimate --json --threads 1";
+    let told: Value = serde_json::from_str(&done(home.path(), arguments)).unwrap();
+    let wall_s = begun.elapsed().as_secs_f64();
+    let measured = told["measured_runs"].as_f64().unwrap();
+    assert!((1.0..1000.0).contains(&measured), "{told}");
+    let a_run_s = told["measured_wall_s"].as_f64().unwrap() / measured;
+    assert!(
+        wall_s < 5.0 + 0.5 + 3.0 * a_run_s + 3.0,
+        "{wall_s} s: {told}"
+    );
 }
 
 /// The numbers of a Latin hypercube are where they are said to be.

@@ -3,6 +3,7 @@
 use crate::output::{to_stderr, to_stdout};
 use crate::safe_text::{message, visible};
 use crepitus_files::output::{OutputError, is_stdout};
+use crepitus_identify::files::FileError;
 use crepitus_scene::SceneError;
 use serde_json::{Map, Value, json};
 use std::fmt::Display;
@@ -28,6 +29,15 @@ pub(crate) enum Failure {
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
         Self::input(error)
+    }
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
+        match error {
+            FileError::Refused(why) => Self::Input(why),
+            FileError::Interrupted => Self::interrupted(),
+        }
     }
 }
 

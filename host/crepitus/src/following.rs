@@ -79,6 +79,15 @@ pub(crate) fn follow(
     Ok(end)
 }
 
+/// Runs until the follower asks for the end, with a device that is armed or not, and stays so: the caller disarms.
+pub(crate) fn follow_as_it_is(
+    client: &mut Client<Line>,
+    follower: &mut impl Follower,
+) -> Result<End, Failure> {
+    let is_armed = client.is_armed();
+    run(client, None, is_armed, follower)
+}
+
 /// A fault of the last moment before the end was not seen as a change of the state.
 fn refuse_fault(client: &mut Client<Line>) -> Result<(), Failure> {
     let until = client.now() + DISARM_TIMEOUT;

@@ -1,5 +1,6 @@
 //! `crepitus`: the command line tool. One file a verb, under `verbs`.
 
+mod angle_table;
 mod cli;
 mod crash_text;
 mod device_command;

@@ -3,38 +3,20 @@
 use crate::failure::{Failure, warn};
 use crepitus_files::names::is_reserved;
 use crepitus_files::output::{Inputs, NewFile};
+use crepitus_scene::preset::judged::{FOLDER_VARIABLE, own_folder};
 use crepitus_scene::preset::{self, Disorder, Preset};
 use crepitus_scene::similar::{question, similar};
-use std::env;
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-
-/// Names another folder.
-pub(crate) const FOLDER_VARIABLE: &str = "CREPITUS_PRESETS";
 
 /// The longest name.
 const MOST_CHARACTERS: usize = 60;
 
 /// The folder: `CREPITUS_PRESETS`, or `crepitus/presets` in the user's configuration.
 pub(crate) fn folder() -> Result<PathBuf, Failure> {
-    let variable = |name| env::var_os(name).filter(|value| !value.is_empty());
-    if let Some(folder) = variable(FOLDER_VARIABLE) {
-        return Ok(folder.into());
-    }
-    let home = || variable("HOME").map(PathBuf::from);
-    let configuration = if cfg!(windows) {
-        variable("APPDATA").map(PathBuf::from)
-    } else if cfg!(target_os = "macos") {
-        home().map(|home| home.join("Library/Application Support"))
-    } else {
-        // A relative path in it is to be ignored.
-        let xdg = variable("XDG_CONFIG_HOME").map(PathBuf::from);
-        xdg.filter(|path| path.is_absolute())
-            .or_else(|| home().map(|home| home.join(".config")))
-    };
-    match configuration {
-        Some(folder) => Ok(folder.join("crepitus/presets")),
+    match own_folder() {
+        Some(folder) => Ok(folder),
         None => Err(Failure::Input(format!(
             "there is no home folder to keep presets in: set {FOLDER_VARIABLE} to a folder"
         ))),

@@ -13,7 +13,9 @@ pub(crate) mod devices;
 pub(crate) mod disarm;
 pub(crate) mod doctor;
 pub(crate) mod effects;
+pub(crate) mod experiment;
 pub(crate) mod export;
+pub(crate) mod fit;
 pub(crate) mod identify;
 pub(crate) mod identify_actuator;
 pub(crate) mod info;
@@ -71,6 +73,7 @@ verbs! {
     Calibrate: calibrate,
     Identify: identify,
     IdentifyActuator: identify_actuator,
+    Fit: fit,
     Zero: zero,
     Arm: arm,
     Disarm: disarm,
@@ -88,6 +91,7 @@ verbs! {
     Laws: laws,
     Effects: effects,
     Vibration: vibration,
+    Experiment: experiment,
     Scenes: scenes,
     Presets: presets,
     Completions: completions,

@@ -17,6 +17,8 @@
 //! | what is compared, and the intervals | `problem.rs`, `prior.rs`, `fit.rs` |
 //! | where a swing begins and ends | `swing.rs`, `passing.rs` |
 //! | the quantities, and where each stands in a scene | [`Quantity`] |
+//! | what the model of rigid parts leaves out, and how a result names it | `imperfect.rs`, [`Imperfections`](crepitus_plant::swing::Imperfections) |
+//! | a result as JSON | [`summary`] |
 //! | what is visible, and what is refused | `visible.rs`, `whole.rs`, `plausible.rs`, [`Refusal`] |
 //!
 //! ```
@@ -36,6 +38,7 @@
 
 mod fit;
 mod identified;
+mod imperfect;
 mod numbers;
 mod passing;
 mod plausible;
@@ -48,6 +51,7 @@ mod residuals;
 pub mod scene;
 mod shown;
 mod start;
+mod summary;
 mod swing;
 mod visible;
 mod whole;
@@ -58,3 +62,4 @@ pub use quantity::Quantity;
 pub use recording::{Measured, Recording, Sample, Weight};
 pub use refusal::Refusal;
 pub use shown::{Result as QuantityResult, Shown};
+pub use summary::summary;

@@ -1,7 +1,7 @@
 //! Value with a 95 % confidence interval.
 
 /// Standard deviations to either side that hold 95 % of a normal distribution.
-pub const DEVIATIONS: f64 = 1.959_964;
+pub const DEVIATIONS: f64 = 1.959_963_984_540_054;
 
 /// A value and the half width of its 95 % confidence interval, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -51,10 +51,12 @@ fn drawn(random: &mut fastrand::Rng, stiction: f64) -> Pendulum {
 
 /// Values of four braces, compared; the row `name` of the page's table has what is outside.
 fn simulated(seed: u64, stiction: f64, name: &str) -> (usize, usize) {
-    const BRACES: usize = 4;
+    // Two of the page's four, but in the long mode.
+    let is_long = std::env::var_os("CREPITUS_LONG").is_some();
+    let braces = if is_long { 4 } else { 2 };
     let mut random = fastrand::Rng::with_seed(seed);
     let mut all: Vec<Compared> = Vec::new();
-    for number in 0..BRACES {
+    for number in 0..braces {
         let it = drawn(&mut random, stiction);
         let armed = Pendulum {
             spring_nm: 3.0,
@@ -84,18 +86,20 @@ fn simulated(seed: u64, stiction: f64, name: &str) -> (usize, usize) {
         list => format!("| {} of {visible} | {} |", visible - wrong, list.join("; ")),
     };
     let head = ["| inside, of those visible | outside |", "|---|---|"].map(str::to_owned);
-    PAGE.hold(name, &[&head[..], &[row]].concat());
+    if is_long {
+        PAGE.hold(name, &[&head[..], &[row]].concat());
+    }
     (visible - wrong, wrong)
 }
 
 #[test]
 fn soft_teeth_and_a_noisy_current_are_within_the_intervals() {
     let (inside, outside) = simulated(101, 1.0, "soft teeth");
-    assert!(inside >= 30 && outside <= 1, "{inside} {outside}");
+    assert!(inside >= 15 && outside <= 1, "{inside} {outside}");
 }
 
 #[test]
 fn a_friction_that_is_greater_at_rest_is_within_the_intervals() {
     let (inside, outside) = simulated(102, 1.3, "soft teeth and stiction");
-    assert!(inside >= 28 && outside <= 2, "{inside} {outside}");
+    assert!(inside >= 14 && outside <= 1, "{inside} {outside}");
 }

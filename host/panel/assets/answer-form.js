@@ -10,37 +10,48 @@ export const outcome = (is) =>
     ? null
     : el("span", { class: `tag ${is ? "yes" : "no"}` }, text(is ? "answer.right" : "answer.wrong"));
 
+/** A choice of one of these names; first there is none, with this text. */
+export const choice = (name, names, nameOf, none) =>
+  el(
+    "select",
+    { name },
+    el("option", { value: "" }, none),
+    ...names.map((value) => el("option", { value }, nameOf(value))),
+  );
+
+/** A scale from 1 to 5 with a text at each end. */
+export function scale(name, legend, [low, high]) {
+  const inputs = [1, 2, 3, 4, 5].map((value) => el("input", { type: "radio", name, value }));
+  const labels = { 1: low, 5: high };
+  return {
+    root: el(
+      "fieldset",
+      { class: "choices" },
+      el("legend", null, legend),
+      ...inputs.map((input) => tick(labels[input.value] ?? input.value, input)),
+    ),
+    /** What was chosen; 0 as long as nothing is. */
+    read: () => Number(inputs.find((input) => input.checked)?.value ?? 0),
+    fill(chosen) {
+      for (const input of inputs) input.checked = Number(input.value) === chosen;
+    },
+  };
+}
+
 /** Fields of an answer from the choices of a lesson. */
 export function makeAnswer(choices) {
-  const options = (names, nameOf) => names.map((name) => el("option", { value: name }, nameOf(name)));
-  const disorder = el(
-    "select",
-    { name: "disorder" },
-    el("option", { value: "" }, text("answer.choose")),
-    ...options(choices.disorders, disorderName),
-  );
-  const level = el(
-    "select",
-    { name: "level" },
-    el("option", { value: "" }, text("answer.no-level")),
-    ...options(choices.levels, levelName),
-  );
-  const radio = (value) => el("input", { type: "radio", name: "confidence", value });
-  const confidence = [1, 2, 3, 4, 5].map(radio);
-  const labels = { 1: text("answer.low"), 5: text("answer.high") };
+  const disorder = choice("disorder", choices.disorders, disorderName, text("answer.choose"));
+  const level = choice("level", choices.levels, levelName, text("answer.no-level"));
+  const ends = [text("answer.low"), text("answer.high")];
+  const confidence = scale("confidence", text("answer.confidence"), ends);
   const update = () => (level.disabled = disorder.value === "healthy");
   disorder.addEventListener("change", update);
   return {
     fields: [field(text("answer.disorder"), disorder), field(text("answer.level"), level)],
-    confidence: el(
-      "fieldset",
-      { class: "choices" },
-      el("legend", null, text("answer.confidence")),
-      ...confidence.map((input) => tick(labels[input.value] ?? input.value, input)),
-    ),
+    confidence: confidence.root,
     /** What was entered; null as long as something is missing. */
     read() {
-      const sure = Number(confidence.find((input) => input.checked)?.value);
+      const sure = confidence.read();
       if (!disorder.value || !sure) return null;
       return { disorder: disorder.value, level: (!level.disabled && level.value) || null, confidence: sure };
     },
@@ -48,7 +59,7 @@ export function makeAnswer(choices) {
     fill(given) {
       disorder.value = given?.disorder ?? "";
       level.value = given?.level ?? "";
-      for (const input of confidence) input.checked = Number(input.value) === given?.confidence;
+      confidence.fill(given?.confidence);
       update();
     },
   };

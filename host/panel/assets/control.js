@@ -82,7 +82,7 @@ function showControls() {
 }
 
 function showNext() {
-  const { status, lesson, parameters } = latest;
+  const { status, lesson, experiment, parameters } = latest;
   const preset = presetOf(parameters?.preset);
   const facts = {
     state: stateName(),
@@ -92,6 +92,7 @@ function showNext() {
     hasFault: status?.faults?.some((fault) => !fault.coil),
     isZeroed: status?.zeroed,
     lesson,
+    experiment,
     isAnswered: lesson?.students.every((student) => answerOf(lesson, student)),
     isHealthy: parameters?.preset === "healthy",
     knee: kneeName(),
@@ -238,7 +239,7 @@ export function startControl() {
     update();
     byId("faults").replaceChildren(el("div", { class: "fault" }, el("strong", null, text(`refused.${keyFault()}`))));
   });
-  for (const kind of ["hello", "status", "holder", "parameters", "presets", "lesson"]) on(kind, update);
+  for (const kind of ["hello", "status", "holder", "parameters", "presets", "lesson", "experiment"]) on(kind, update);
   on("status", showMessage);
   onLanguage(() => {
     faultsShown = "";

@@ -5,7 +5,7 @@ import { latest, on } from "./connection.js";
 import { controlReason } from "./control.js";
 import { byId, el, freshId, setText } from "./dom.js";
 import { buildDrawer, updateDrawer } from "./drawer.js";
-import { evidenceTag, FIRST_DISORDER } from "./labels.js";
+import { evidenceTag, FIRST_DISORDER, judgedLines } from "./labels.js";
 import { disorderName, kneeName, presets, presetText } from "./names.js";
 import { request } from "./report.js";
 import { saveKnee } from "./save-knee.js";
@@ -46,6 +46,7 @@ function describe(card, preset) {
       " ",
       source,
     ),
+    ...judgedLines(preset),
   );
   card.preset = preset;
 }

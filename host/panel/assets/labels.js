@@ -24,3 +24,7 @@ export function showSecret(output, isSecret, value) {
   output.classList.toggle("secret", isSecret);
   setText(output, isSecret ? text("hidden") : value);
 }
+
+/** What clinicians found about a preset, a line a study. */
+export const judgedLines = (preset) =>
+  (preset.judged ?? []).map((judged) => el("p", { class: "hint" }, text("knee.judged", { judged })));

@@ -4,7 +4,7 @@ import { isTeacher } from "./connection.js";
 import { controlReason } from "./control.js";
 import { el } from "./dom.js";
 import { disorderName, lessonTitle, levelName } from "./names.js";
-import { request, say } from "./report.js";
+import { openOffered, request } from "./report.js";
 import { number, text } from "./strings.js";
 
 const LEVELS = ["mild", "moderate", "severe"];
@@ -102,13 +102,7 @@ function matrix(part, title) {
   );
 }
 
-async function openReport() {
-  const ok = await request("report", { language: document.documentElement.lang });
-  if (!ok) return;
-  // A path of this server, never an address that a message could bring in.
-  if (!/^\/report\/[\w-]+$/.test(ok.path)) return say(text("results.bad-report"), true);
-  window.open(ok.path, "_blank", "noopener");
-}
+const openReport = () => openOffered("report", { language: document.documentElement.lang });
 
 /** Builds the results. */
 export function showResults(host, lesson) {

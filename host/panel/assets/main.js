@@ -1,7 +1,7 @@
 // Starts the parts of the page, then connects.
 
 import { startClass } from "./class.js";
-import { connect, on } from "./connection.js";
+import { connect, isTeacher, on } from "./connection.js";
 import { startControl } from "./control.js";
 import { byId } from "./dom.js";
 import { startExamination } from "./examination.js";
@@ -12,7 +12,7 @@ import { startLive } from "./live.js";
 import { startNotes } from "./notes.js";
 import { startRecordings } from "./recordings.js";
 import { startStrings } from "./strings.js";
-import { setReplay, startTabs } from "./tabs.js";
+import { setExperiments, setReplay, startTabs } from "./tabs.js";
 import { startTarget } from "./target.js";
 import { startWall } from "./wall.js";
 
@@ -40,5 +40,12 @@ startClass();
 startLesson();
 startRecordings();
 startWall();
-on("hello", (hello) => setReplay(hello.source.kind === "replay"));
+let experiment = null;
+on("hello", (hello) => {
+  setReplay(hello.source.kind === "replay");
+  const has = hello.experiments && isTeacher();
+  setExperiments(has);
+  // Few panels have it.
+  if (has) experiment ??= import("./experiment.js").then(({ startExperiment }) => startExperiment());
+});
 connect();

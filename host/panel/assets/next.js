@@ -14,6 +14,9 @@ const ROWS = [
   ["fault", ({ hasFault }) => hasFault],
   ["straight", ({ isZeroed }) => !isZeroed],
   ["starting", ({ state }) => state === "arming"],
+  ["session-motor", ({ experiment, state }) => experiment && !experiment.over && state !== "armed"],
+  ["session", ({ experiment }) => experiment && !experiment.over],
+  ["session-over", ({ experiment }) => experiment],
   ["results", ({ lesson }) => lesson?.ended],
   ["lesson-motor", ({ lesson, state }) => lesson && state !== "armed"],
   ["lesson-start", ({ lesson }) => lesson && !lesson.began],
@@ -41,6 +44,8 @@ const NAMED = {
   close: "results.close",
   play: "player.play",
   part: "tab.knee",
+  session: "tab.experiment",
+  leave: "experiment.leave",
 };
 
 /** The sentence for these facts. */

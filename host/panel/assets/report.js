@@ -20,6 +20,15 @@ export function say(message, isError = false) {
 export const errorText = (error) =>
   error.message === "not-connected" ? text("error.not-connected") : error.message;
 
+/** Opens a page that the server offers once, in a tab of its own. */
+export async function openOffered(what, more) {
+  const ok = await request(what, more);
+  if (!ok) return;
+  // A path of this server, never an address that a message could bring in.
+  if (!/^\/report\/[\w-]+$/.test(ok.path)) return say(text("results.bad-report"), true);
+  window.open(ok.path, "_blank", "noopener");
+}
+
 /** Sends a request and reports an error; resolves with `ok`, or with null. */
 export async function request(what, more, done) {
   try {

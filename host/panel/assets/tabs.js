@@ -3,16 +3,20 @@
 
 import { byId } from "./dom.js";
 
-const NAMES = ["live", "knee", "lesson", "recordings"];
+const NAMES = ["live", "knee", "lesson", "experiment", "recordings"];
 const wide = matchMedia("(min-width: 1100px)");
 let chosen = "knee";
 let replay = false;
+let experiments = false;
 const listeners = [];
 
 const tabOf = (name) => byId(`tab-${name}`);
 const offered = () =>
   NAMES.filter(
-    (name) => !(name === "live" && (wide.matches || replay)) && !(replay && name !== "recordings"),
+    (name) =>
+      !(name === "live" && (wide.matches || replay)) &&
+      !(name === "experiment" && !experiments) &&
+      !(replay && name !== "recordings"),
   );
 
 /** Calls this with the name of a tab that is shown. */
@@ -43,6 +47,12 @@ function update() {
 /** Shows a tab. */
 export function showTab(name) {
   chosen = name;
+  update();
+}
+
+/** Offers the tab for experiments, or not. */
+export function setExperiments(has) {
+  experiments = has;
   update();
 }
 

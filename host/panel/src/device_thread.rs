@@ -10,6 +10,7 @@
 //! | who ended torque, and when | `device_thread/torque_end.rs` |
 //! | parameters and presets | `device_thread/knee.rs` |
 //! | lessons | `device_thread/lessons.rs`, `device_thread/resumed.rs` |
+//! | sessions of experiments | `device_thread/experiments.rs` |
 //! | students who answer by phone | `device_thread/students.rs` |
 //! | recordings | `device_thread/recording.rs` |
 //! | frames of the curves, and what a blind trial hides of them | `device_thread/frames.rs` |
@@ -21,6 +22,7 @@
 //! | status as a message | `device_thread/status.rs` |
 
 mod examination;
+mod experiments;
 mod frames;
 mod hand;
 mod heard;
@@ -28,6 +30,7 @@ mod knee;
 mod lessons;
 mod notes;
 mod orders;
+mod program;
 mod recording;
 mod resumed;
 mod status;
@@ -38,6 +41,7 @@ mod tests;
 mod torque_end;
 
 use crate::class::Class;
+use crate::experiment::Experiments;
 use crate::live::{Envelope, Pace, Pain};
 use crate::request::Request;
 use crate::shared::{Latest, Order, Outcome, Shared};
@@ -45,14 +49,16 @@ use axum::extract::ws::Utf8Bytes;
 use crepitus_client::connection::HandInput;
 use crepitus_client::{Client, Error, Event, Transport};
 use crepitus_protocol::telemetry::{Block, SampleFlags};
-use crepitus_protocol::{Revision, Session, TICKS_PER_S, Values};
+use crepitus_protocol::{Revision, TICKS_PER_S, Values};
 use crepitus_recording::Samples;
 use crepitus_scene::preset::Preset;
 use examination::Examined;
+use experiments::Experiment;
 use hand::Hand;
 use heard::Heard;
 use lessons::Held;
 use notes::Note;
+pub use program::Program;
 use recording::Recorded;
 use serde_json::Value;
 use status::Speed;
@@ -81,27 +87,6 @@ const POLL: Duration = Duration::from_millis(2);
 
 /// Interval of attempts to connect again.
 const RECONNECT_EVERY: Duration = Duration::from_millis(500);
-
-/// Services that the program around the panel provides.
-pub trait Program<T> {
-    /// An error as text for people.
-    fn explain(&self, client: &mut Client<T>, error: Error) -> String;
-
-    /// The program of this session, for people.
-    fn holder(&self, client: &mut Client<T>, session: Session) -> String;
-
-    /// The user's own presets; files that cannot be read are left out.
-    fn own_presets(&self) -> Vec<Preset>;
-
-    /// Saves one of them.
-    ///
-    /// # Errors
-    /// A text for people.
-    fn save_preset(&self, name: &str, preset: &Preset, replace: bool) -> Result<(), String>;
-
-    /// Returns whether the program has been asked to end.
-    fn has_ended(&self) -> bool;
-}
 
 /// The thread that has the device.
 pub(crate) struct DeviceThread<'p, T> {
@@ -140,6 +125,7 @@ pub(crate) struct DeviceThread<'p, T> {
     /// Files that are being made.
     sealing: Vec<JoinHandle<Result<(), String>>>,
     lesson: Option<Held>,
+    experiment: Experiment,
     class: Class,
     /// Replies to answers that wait for the disk.
     unstored: Vec<oneshot::Sender<Outcome>>,
@@ -167,6 +153,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         shared: Arc<Shared>,
         inbox: Receiver<Order>,
         sessions: Option<PathBuf>,
+        experiments: Option<Experiments>,
         hand: Option<HandInput>,
     ) -> Result<Self, Error> {
         let (committed, values) = client.parameters()?;
@@ -202,6 +189,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             recording: None,
             sealing: Vec::new(),
             lesson: None,
+            experiment: Experiment::new(experiments),
             class: Class::default(),
             unstored: Vec::new(),
             hides: false,
@@ -217,6 +205,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         device_thread.publish_presets();
         device_thread.publish_parameters();
         device_thread.publish_lesson();
+        device_thread.publish_experiment();
         device_thread.publish_class();
         device_thread.publish_target();
         device_thread.restart_examination();
@@ -249,6 +238,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         if self.is_lost {
             return Ok(());
         }
+        self.end_experiment();
         closed?;
         self.client.close().map(|_| ())
     }
@@ -266,6 +256,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
         self.move_hand();
         self.check_files();
         self.notice_torque_end();
+        self.supervise_experiment();
         if self.hides != self.is_hidden() {
             self.hides = !self.hides;
             self.publish_parameters();
@@ -392,7 +383,10 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             Request::Zero => self.done(Client::zero),
             Request::Arm => self.arm(),
             Request::ClearFault => self.done(Client::clear_fault),
-            Request::Save => self.done(Client::save),
+            Request::Save => {
+                self.check_open()?;
+                self.done(Client::save)
+            }
             Request::Apply { preset, add } => self.apply(&preset, add),
             Request::Set { changes } => self.set(&changes),
             Request::Reset => self.reset(),
@@ -417,6 +411,7 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             Request::LessonEnd { language } => self.end_lesson(&language),
             Request::LessonClose => self.close_lesson(),
             Request::LessonResume { folder } => self.resume_lesson(&folder),
+            Request::Experiment(step) => self.step_experiment(&step),
             Request::Severity { worse } => self.change_severity(worse),
             Request::Class { open } => {
                 self.open_class(open);
@@ -436,6 +431,8 @@ impl<'p, T: Transport> DeviceThread<'p, T> {
             | Request::Answer { .. }
             | Request::Fault { .. }
             | Request::Lessons
+            | Request::Experiments
+            | Request::ExperimentResults
             | Request::Recordings
             | Request::Open { .. }
             | Request::Trace { .. } => Err("this is not for the device".to_owned()),

@@ -11,7 +11,7 @@ use crepitus_protocol::coil::COIL_FAULTS;
 use crepitus_protocol::fault::FAULTS;
 use crepitus_protocol::parameters::{Kind, PARAMETERS, Parameter, When};
 use crepitus_protocol::{TICKS_PER_S, Values};
-use crepitus_scene::preset::{self, Disorder, Evidence, Preset};
+use crepitus_scene::preset::{self, Disorder, Evidence, Judgement, Preset};
 use crepitus_scene::values::{is_effect, is_of_knee, with_preset};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -40,7 +40,7 @@ pub(crate) fn greeting(tables: &Value, links: &Invitations, role: Role, page: Pa
 }
 
 /// The tables. [`greeting`] adds what is of a page.
-pub(crate) fn tables(source: &Value, sessions: Option<&Path>) -> Value {
+pub(crate) fn tables(source: &Value, sessions: Option<&Path>, has_experiments: bool) -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "source": source,
@@ -75,6 +75,7 @@ pub(crate) fn tables(source: &Value, sessions: Option<&Path>) -> Value {
             }))
         }).collect::<Vec<_>>(),
         "stores": sessions.map(|folder| folder.display().to_string()),
+        "experiments": has_experiments,
         "students_max": crate::lesson::MOST_STUDENTS,
     })
 }
@@ -140,6 +141,7 @@ fn described(preset: &Preset, is_own: bool) -> Value {
         "feel": preset.feel,
         "evidence": preset.evidence.map(Evidence::name),
         "source": preset.source,
+        "judged": preset.judgements().iter().map(Judgement::to_text).collect::<Vec<_>>(),
         "own": is_own,
         "effects": effects,
         "values": values,
@@ -217,7 +219,7 @@ mod tests {
 
     #[test]
     fn every_lesson_that_ships_is_listed() {
-        let tables = tables(&Value::Null, None);
+        let tables = tables(&Value::Null, None, false);
         assert_eq!(
             tables["lessons"].as_array().unwrap().len(),
             plans::FILES.len()
@@ -227,7 +229,7 @@ mod tests {
     /// A link gives its holder rights: only a teacher has those of others.
     #[test]
     fn a_greeting_has_what_the_role_may_know() {
-        let tables = tables(&json!({ "kind": "device", "serial": "1" }), None);
+        let tables = tables(&json!({ "kind": "device", "serial": "1" }), None, false);
         let links = Invitations::new("of-student", "of-remote", "of-wall", false);
         for role in Role::ALL {
             let hello = greeting(&tables, &links, role, 7);
@@ -245,7 +247,7 @@ mod tests {
 
     #[test]
     fn each_group_has_its_kind() {
-        let tables = tables(&Value::Null, None);
+        let tables = tables(&Value::Null, None, false);
         let groups = tables["groups"].as_array().unwrap();
         let kind = |name: &str| groups.iter().find(|g| g["name"] == name).unwrap()["kind"].clone();
         assert_eq!(kind("crepitus"), "symptom");

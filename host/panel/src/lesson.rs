@@ -18,28 +18,25 @@
 //! | to find | look in |
 //! |---|---|
 //! | the form of a lesson's file, the shipped lessons | [`Plan`], [`plans`] |
-//! | the order of the trials, from a seed | [`order`] |
+//! | the order of the trials, from a seed | [`order`](crepitus_studies::experiment::order) |
 //! | what may be called when; what is revealed when | [`Lesson`], [`LessonError`] |
 //! | what a page shows, and a student's phone | [`View`], [`OwnView`] |
-//! | Cohen's kappa and its interval | [`statistics`] |
+//! | Cohen's kappa and its interval | [`agreement`](crepitus_studies::experiment::agreement) |
 //! | files of a session | [`SessionFolder`], [`Session`] |
 //! | the page to print, and its texts | [`report`] |
 
-mod finding;
 mod folder;
 mod lesson;
-pub mod order;
 mod own;
 mod plan;
 pub mod plans;
 pub mod report;
 mod session;
-pub mod statistics;
 mod summary;
 mod view;
 
-pub(crate) use finding::HEALTHY;
-pub use finding::{Finding, Knee};
+pub(crate) use crepitus_studies::experiment::finding::HEALTHY;
+pub use crepitus_studies::experiment::finding::{Finding, Knee};
 pub(crate) use folder::trial_of;
 pub use folder::{FolderError, SessionFolder};
 pub use lesson::{

@@ -23,6 +23,7 @@
 //! | the layout of frames | `frame.rs` |
 //! | the tables that a page shows | `hello.rs`, `book.rs` |
 //! | lessons: plans, blind trials, scores, folders of sessions | [`lesson`] |
+//! | sessions of experiments | `experiment.rs` |
 //! | what a live view shows: envelope, states, target speeds | [`live`] |
 //! | the page itself | `assets` |
 //! | the knee on one page, without a program | `page.rs`, `assets/page` |
@@ -36,6 +37,7 @@ mod book;
 mod class;
 mod control;
 mod device_thread;
+mod experiment;
 mod frame;
 mod guard;
 mod hand;
@@ -62,6 +64,7 @@ mod tokens;
 mod watchdog;
 
 pub use device_thread::Program;
+pub use experiment::Experiments;
 pub use page::{PageError, knee_page, page_languages};
 pub use panel::{Links, Panel, Settings, Source};
 pub use panel_error::PanelError;

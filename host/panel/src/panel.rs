@@ -2,6 +2,7 @@
 
 use crate::archive::Archive;
 use crate::device_thread::{DeviceThread, Program};
+use crate::experiment::Experiments;
 use crate::guard::Names;
 use crate::hand;
 use crate::hello;
@@ -30,6 +31,8 @@ pub struct Settings {
     pub lan: Option<IpAddr>,
     /// Folder in which sessions and recordings are stored; none: nowhere.
     pub sessions: Option<PathBuf>,
+    /// Protocols of experiments, and their study; none: no experiments.
+    pub experiments: Option<Experiments>,
     /// Recordings to look at.
     pub recordings: Vec<PathBuf>,
 }
@@ -72,6 +75,7 @@ pub struct Panel {
     shared: Arc<Shared>,
     inbox: Receiver<Order>,
     sessions: Option<PathBuf>,
+    experiments: Option<Experiments>,
     hand: Option<HandInput>,
     links: Links,
 }
@@ -115,7 +119,9 @@ impl Panel {
         }
         let (orders, inbox) = channel();
         let (questions, asked) = channel();
-        let tables = hello::tables(&described(source), settings.sessions.as_deref());
+        let has_experiments = settings.experiments.is_some();
+        let sessions = settings.sessions.as_deref();
+        let tables = hello::tables(&described(source), sessions, has_experiments);
         let link = |page: &str, token: &str| format!("{scheme}://{first}/{page}#{token}");
         let student = link("student.html", &tokens.student);
         let remote = link("remote.html", &tokens.remote);
@@ -143,6 +149,7 @@ impl Panel {
             shared,
             inbox,
             sessions: settings.sessions,
+            experiments: settings.experiments,
             hand: match source {
                 Source::Device { hand, .. } => hand.clone(),
                 Source::Replay => None,
@@ -169,10 +176,11 @@ impl Panel {
             shared,
             inbox,
             sessions,
+            experiments,
             hand,
             ..
         } = self;
-        DeviceThread::new(client, program, shared, inbox, sessions, hand)?.run()
+        DeviceThread::new(client, program, shared, inbox, sessions, experiments, hand)?.run()
     }
 
     /// Shows recordings until the program is asked to end.

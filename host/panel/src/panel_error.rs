@@ -1,6 +1,8 @@
 //! Errors of starting the panel.
 
+use crepitus_studies::experiment::StoreError;
 use std::net::IpAddr;
+use std::path::PathBuf;
 
 /// Command that lists the addresses of this computer.
 const LIST_ADDRESSES: &str = if cfg!(windows) {
@@ -34,6 +36,19 @@ pub enum PanelError {
         /// Error of the system.
         source: std::io::Error,
     },
+    /// The folder with protocols is missing.
+    #[error(
+        "--experiments {}: expected a folder with protocols: make it, then write one with \
+        `crepitus experiment new threshold {}`",
+        .folder.display(), .folder.join("torque.toml").display()
+    )]
+    NoProtocols {
+        /// Folder.
+        folder: PathBuf,
+    },
+    /// The study in that folder cannot be opened or written.
+    #[error("--experiments: {0}")]
+    Study(StoreError),
     /// The system has no random numbers, or no threads.
     #[error("the panel cannot start: {0}")]
     System(String),

@@ -53,6 +53,8 @@ pub(crate) struct Latest {
     pub(crate) target: Utf8Bytes,
     pub(crate) examination: Utf8Bytes,
     pub(crate) lesson: Utf8Bytes,
+    /// Session of an experiment, for the teacher's pages.
+    pub(crate) experiment: Utf8Bytes,
     /// Students who have joined.
     pub(crate) class: Utf8Bytes,
     /// Part of the status for students.
@@ -81,6 +83,7 @@ impl Latest {
                 &self.examination,
                 &self.lesson,
                 &self.class,
+                &self.experiment,
             ],
             Role::Viewer => vec![
                 &self.status,

@@ -18,6 +18,7 @@
 //! | limits parsed from text | [`limits`] |
 //! | progress and cancellation of a study | [`watcher`] |
 //! | pictures that explain one hard case, or a build-up, each | `story` |
+//! | experiments with people: thresholds, A or B, realism | [`experiment`] |
 //! | many runs of one scene, a row each | [`sweep`] |
 //!
 //! A study is one folder: its engine; `report`, how its data are drawn on its page; `words`, what is said of them on the
@@ -30,6 +31,7 @@ pub mod accuracy;
 pub mod coupled;
 pub mod effects;
 pub mod event_errors;
+pub mod experiment;
 pub mod laws;
 pub mod limits;
 pub mod machine;

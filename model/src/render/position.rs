@@ -81,6 +81,7 @@ impl Sensing {
 
     /// The position of an angle. Its counts are rounded toward zero, and so those of
     /// the mirrored angle are mirrored.
+    #[inline]
     pub fn position<F: Real>(&self, angle_rad: f64) -> Position<F> {
         #[expect(
             clippy::cast_possible_truncation,

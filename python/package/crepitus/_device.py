@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from types import TracebackType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,19 +21,32 @@ from ._types import Columns, SceneLike
 Info = dict[str, Any]
 
 
+class Mark(NamedTuple):
+    """A mark that :meth:`Device.mark` made."""
+
+    #: Its time on the samples' ``t_s``, s.
+    t_s: float
+    #: Its text.
+    text: str
+
+
 @dataclass(frozen=True)
 class Stream:
-    """Samples of a device.
+    """Samples of a device, of a :meth:`Device.stream` or a block of :meth:`Device.blocks`.
 
     Attributes:
-        samples: Columns, a row a sample of 50 µs (or every n-th): ``t_s``, ``angle_rad``,
-            ``omega_rad_s``, ``model_torque_nm``, ``torque_nm`` (commanded to the motor), ``current_a``,
-            ``phase``, ``limit`` (why the torque is not the model's), …; what was not measured is NaN.
-        accounting: Samples ``produced`` = ``received`` + ``dropped``; of the latter ``by_device``.
+        samples: Columns, a row a sample of 50 µs (or every n-th): ``t_s`` (device time since the connection was made, over
+            all streams), ``angle_rad``, ``omega_rad_s``, ``model_torque_nm``, ``torque_nm`` (commanded to the motor),
+            ``current_a``, ``phase``, ``limit`` (why the torque is not the model's), …; what was not measured is NaN.
+        accounting: Samples ``produced`` = ``received`` + ``dropped``; of the latter ``by_device``; of blocks, so far.
+        marks: Marks since the stream or block before.
+        zero_unix_s: Unix time at which ``t_s`` was zero, s.
     """
 
     samples: Columns = field(repr=False)
     accounting: dict[str, int]
+    marks: tuple[Mark, ...] = ()
+    zero_unix_s: float = float("nan")
 
 
 @dataclass(frozen=True)
@@ -58,13 +71,29 @@ class Recording:
 def read_recording(path: str | os.PathLike[str]) -> Recording:
     """Reads a recording that :meth:`Device.record` or ``crepitus record`` wrote, and checks every byte.
 
-    A Parquet file, which a tool with that feature leaves, is read by pandas and polars themselves.
+    Also one that has become a Parquet file, which pandas and polars read by themselves.
     """
     samples, about = _crepitus.read_recording(os.fspath(path))
     about = json.loads(about)
     return Recording(
         samples, about["books"], about["metadata"], about["complete"], about["warnings"]
     )
+
+
+def export_parquet(
+    recording: str | os.PathLike[str], to: str | os.PathLike[str], *, force: bool = False
+) -> int:
+    """Writes a recording as a Parquet file, with title, devices and parameters as its metadata.
+
+    Args:
+        recording: The file of a recording.
+        to: The new file.
+        force: Replace a file of that name.
+
+    Returns:
+        The number of its rows.
+    """
+    return _crepitus.export_parquet(os.fspath(recording), os.fspath(to), bool(force))
 
 
 def examination(of: Recording | Stream) -> dict[str, float]:
@@ -96,10 +125,10 @@ class Device:
 
     **Torque needs your program.** While the device is armed, one of :meth:`stream`, :meth:`record` or
     :meth:`wait` must run: 250 ms without them, and the drive turns torque off. A hung program renders
-    nothing; use :meth:`wait` where you would sleep.
+    nothing; use :meth:`wait` where you would sleep, or a loop over :meth:`blocks`.
 
-    Threads may share a device: a request waits for the one before, but :meth:`stop` ends what another
-    thread does. After ``fork`` a process has to open its own.
+    Threads may share a device. Requests take turns, a few ms each, also while another thread streams; streams, recordings and
+    waits come one after the other, and :meth:`stop` ends them. After ``fork`` a process has to open its own.
     """
 
     def __init__(
@@ -117,7 +146,9 @@ class Device:
                 attached.
             scene: For ``sim`` and ``emulated``, what sets its leg and parameters: ``passive-examination``
                 by default.
-            real_time: Let ``sim`` and ``emulated`` be no faster than real time.
+            real_time: Let the time of ``sim`` and ``emulated`` go with the clock on the wall: no faster in a call, and on between
+                calls, for up to a minute; so a program that sleeps loses the torque as on a brace. Without it time stands
+                still between calls, and the same calls give the same samples.
 
         Raises:
             DeviceError: There is no such device, or it does not answer.
@@ -243,8 +274,44 @@ class Device:
             DeviceError: The connection was lost, or an armed device has disarmed by itself.
             KeyboardInterrupt: After Ctrl-C; the device is disarmed first.
         """
-        samples, accounting = self._device.stream(seconds, _whole("every", every))
-        return Stream(samples, json.loads(accounting))
+        return _stream(self._device.stream(seconds, _whole("every", every)))
+
+    def blocks(
+        self, block_s: float = 0.05, *, seconds: float | None = None, every: int = 1
+    ) -> Iterator[Stream]:
+        """Receives samples block by block, for a loop that acts on them.
+
+        >>> for block in device.blocks(0.05, seconds=2.0):
+        ...     if block.samples["angle_rad"].max() > 1.0:
+        ...         device.set({"crepitus.static_torque_nm": 1.0})
+
+        In the loop the device can be set, marked, armed and disarmed; ``break`` and :meth:`stop` end it. An armed device
+        needs a block at least every 250 ms.
+
+        Args:
+            block_s: Length of a block, s of device time, at least 1 ms. A device that sends nothing yields what there
+                is half a second later.
+            seconds: For how long; without end if left out.
+            every: Keep only every n-th sample, without a filter.
+
+        Raises:
+            DeviceError: As of :meth:`stream`; or this thread is in such a loop already.
+        """
+        left = None if seconds is None else float(seconds)
+        blocks = self._device.blocks(float(block_s), left, _whole("every", every))
+        return _each(blocks)
+
+    def mark(self, text: str) -> float:
+        """Marks this moment in the samples: the next block, or the stream of another thread, has it in ``marks``.
+
+        Returns its time on their ``t_s``, s. A recording has no marks.
+        """
+        return self._device.mark(text)
+
+    @property
+    def zero_unix_s(self) -> float:
+        """Unix time at which ``t_s`` was zero, when the connection was made, s."""
+        return self._device.zero_unix_s
 
     def record(
         self,
@@ -263,3 +330,16 @@ class Device:
 
     def __repr__(self) -> str:
         return repr(self._device)
+
+
+def _stream(received: tuple[Columns, str, list[tuple[float, str]], float]) -> Stream:
+    samples, accounting, marks, zero_unix_s = received
+    return Stream(samples, json.loads(accounting), tuple(Mark(*mark) for mark in marks), zero_unix_s)
+
+
+def _each(blocks: _crepitus.Blocks) -> Iterator[Stream]:
+    try:
+        while (received := blocks.next()) is not None:
+            yield _stream(received)
+    finally:
+        blocks.end()

@@ -39,5 +39,9 @@ class RunError(CrepitusError, RuntimeError):
     """A run or a study that failed: the solver diverged."""
 
 
+class Refusal(CrepitusError, ValueError):
+    """Measurements that do not tell; its text says what they show instead, and what to record."""
+
+
 class DeviceError(CrepitusError, RuntimeError):
     """A device that cannot be used, has refused, or has stopped by itself."""

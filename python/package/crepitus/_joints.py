@@ -120,7 +120,7 @@ class Joints:
             row for each joint, with the state after each step.
 
         Raises:
-            ValueError: The shapes do not fit, or a number is not finite; then no step was done.
+            ValueError: The shapes do not fit, or a number is not finite or beyond 50 rad/s; then no step was done.
         """
         turns, speeds = _pair(dphi_rad, omega_rad_s)
         if turns.ndim == 0 or turns.ndim > 2 or (turns.ndim == 2 and len(turns) != len(self)):
@@ -145,6 +145,9 @@ class Joints:
         return other
 
     __copy__ = copy
+
+    def __deepcopy__(self, _: dict[int, Any]) -> Joints:
+        return self.copy()
 
     @property
     def torque_nm(self) -> npt.NDArray[np.float64]:

@@ -5,16 +5,30 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from hashlib import sha256
+from typing import TYPE_CHECKING, Any
 
-from . import _crepitus
+from . import _crepitus, _frames, _html, _plots
 from ._crepitus import Scene
-from ._types import Columns, SceneLike
+from ._motion import with_motion
+from ._types import Columns, Numbers, SceneLike
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import pandas
+    import polars
+    import xarray
 
 
-@dataclass(frozen=True)
+#: Parts of a summary that depend on the computer and the hour.
+_MEASURED = ("wall_s", "real_time_factor", "ns_per_step", "ns_resolution")
+
+
+@dataclass(frozen=True, eq=False)
 class Run:
     """A run: its trace, its events, its summary.
+
+    Runs are equal if their scenes and numbers are; the time that they took does not count.
 
     Attributes:
         scene: The scene that was run.
@@ -36,12 +50,100 @@ class Run:
         warnings: list[str] = self.summary["warnings"]
         return warnings
 
+    def to_pandas(self, what: str = "trace") -> pandas.DataFrame:
+        """``trace`` or ``events`` as a DataFrame, phases as a category. Needs pandas.
+
+        Its ``attrs`` have ``units``, title, version, commit and the scene's hash.
+        """
+        return _frames.to_pandas(self._part(what), self._attributes())
+
+    def to_polars(self, what: str = "trace") -> polars.DataFrame:
+        """``trace`` or ``events`` as a DataFrame, phases as an enumeration. Needs polars.
+
+        It keeps no metadata: units are in the names, and in :attr:`units`.
+        """
+        return _frames.to_polars(self._part(what))
+
+    def to_xarray(self, what: str = "trace") -> xarray.Dataset:
+        """``trace`` or ``events`` as a Dataset along ``t_s``, phases as text. Needs xarray.
+
+        Each variable has the attribute ``units``; the Dataset has title, version, commit and the scene's hash.
+        """
+        return _frames.to_xarray(self._part(what), self._attributes(), "t_s")
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units by column of trace and events; columns without one are left out."""
+        return _frames.units([*self.trace, *self.events])
+
+    def plot(
+        self,
+        x: str = "t_s",
+        y: str = "torque_nm",
+        *,
+        events: bool = False,
+        ax: matplotlib.axes.Axes | None = None,
+    ) -> matplotlib.axes.Axes:
+        """Draws a column of the trace over another one. Needs matplotlib.
+
+        Args:
+            x: The column across: time, s, or ``angle_rad`` for the torque-angle loop.
+            y: The column upwards.
+            events: Mark breaks, sticks and other events.
+            ax: Axes to draw into; new ones by default.
+
+        Returns:
+            The axes.
+        """
+        return _plots.run(self, x, y, events, ax)
+
+    def _part(self, what: str) -> Columns:
+        if what not in ("trace", "events"):
+            raise ValueError(f"expected 'trace' or 'events', got {what!r}")
+        if what == "trace" and not self.trace:
+            raise ValueError("this run was made with trace=False: there are its events only")
+        return self.trace if what == "trace" else self.events
+
+    def _attributes(self) -> dict[str, Any]:
+        about = {name: self.summary[name] for name in ("title", "crepitus_version", "crepitus_commit")}
+        about["scene_sha256"] = scene_hash(self.scene)
+        return {name: value for name, value in about.items() if value is not None}
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Run):
+            return NotImplemented
+        return (
+            self.scene == other.scene
+            and _frames.same(self.trace, other.trace)
+            and _frames.same(self.events, other.events)
+            and _unmeasured(self.summary) == _unmeasured(other.summary)
+        )
+
+    def __hash__(self) -> int:
+        return hash(self.scene)
+
+    def _repr_html_(self) -> str:
+        return _html.run(self)
+
     def __repr__(self) -> str:
         rows = len(self.trace["t_s"]) if self.trace else 0
         return (
             f"<Run of {self.scene.title!r}: {rows} rows, {len(self.events['t_s'])} events, "
             f"{len(self.warnings)} warnings>"
         )
+
+
+def _unmeasured(summary: dict[str, Any]) -> dict[str, Any]:
+    kept = {name: value for name, value in summary.items() if name not in _MEASURED}
+    kept["effects"] = [
+        {name: value for name, value in effect.items() if name not in _MEASURED} for effect in summary["effects"]
+    ]
+    return kept
+
+
+def scene_hash(scene: SceneLike) -> str:
+    """SHA-256 of a scene as it runs: of :attr:`Scene.toml` in UTF-8, with every default written out."""
+    return sha256(_scene(scene).toml.encode()).hexdigest()
 
 
 def run(
@@ -52,6 +154,7 @@ def run(
     precision: str | None = None,
     as_device: bool = False,
     set: Mapping[str, Any] | None = None,
+    motion: tuple[Numbers, Numbers] | None = None,
     trace: bool = True,
     trace_every: int = 1,
     costs: bool = False,
@@ -66,6 +169,9 @@ def run(
         precision: ``f32`` or ``f64``.
         as_device: Render as the device does: input check, turn-back guard, slew and torque limits.
         set: Other values at keys of the scene, such as ``{"effects.crepitus.preset": "fine"}``.
+        motion: Times, s, and angles, rad, instead of the scene's motion: two arrays of at least 4 finite numbers,
+            the times increasing. They are smoothed as a recording from a file is (``motion.cutoff_hz``), and the run lasts
+            as long as they do, unless ``set`` has a ``duration_s``.
         trace: Keep the trace.
         trace_every: Keep only every n-th row of it.
         costs: Measure what each effect costs, and note it in the summary: a second or so.
@@ -79,7 +185,10 @@ def run(
     Other threads run meanwhile: the GIL is released.
     """
     every = _whole("trace_every", trace_every)
-    checked = _scene(scene).with_(
+    checked = _scene(scene)
+    if motion is not None:
+        checked = with_motion(checked, motion)
+    checked = checked.with_(
         solver=solver, step=step, precision=precision, as_device=as_device, set=_dict(set)
     )
     rows, events, summary = _crepitus.simulate(

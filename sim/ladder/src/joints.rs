@@ -16,17 +16,25 @@
 //! | to find | look in |
 //! |---|---|
 //! | joints, their state and its copies | `joints` |
-//! | a loop over steps, for every rung | `many` |
+//! | a joint with its shaft | `each` |
+//! | a loop over steps, for every rung | `loops` |
+//! | joints of a rung without its type | `many` |
 //! | what a step is given and what is kept of it | `motion` |
+//! | energy that a joint can return | `passivity` |
 //! | joints of a rung step by step; slips in arrays | `rung`, `slips` |
 //! | arrays of steps side by side, runtime choice of the instruction set | `lanes` |
+mod each;
 mod joints;
 mod lanes;
+mod loops;
 mod many;
 mod motion;
+mod passivity;
 mod rung;
 mod slips;
 
+pub use each::StepPart;
 pub use joints::{JointError, Joints};
-pub use many::{Lanes, StepPart};
+pub use many::Lanes;
 pub use motion::{Columns, Counts, Motion, State, StepEvent};
+pub use passivity::Passivity;

@@ -283,7 +283,7 @@ fn one_motion_is_that_of_each() {
     }
 }
 
-/// What a shaft does.
+/// Motion of a shaft.
 enum Way<F> {
     /// Steps with these turns and speeds.
     Steps(Vec<F>, Vec<F>),

@@ -1,6 +1,7 @@
 //! Drive of the shaft: an actuator that makes a torque out of the device's command, or
 //! the [bridge](crate::effects::motor::bridge), which knows voltages only.
 
+use crate::boxed::cloned_in_boxes;
 use crate::chain::{Push, Step, Verdict};
 use crate::energy_balance::{Account, EnergyBalance};
 
@@ -41,8 +42,10 @@ pub trait Actuator: Send {
     fn write(&self, row: &mut Vec<f64>);
 }
 
+cloned_in_boxes!(Commanded, BoxedCommanded);
+
 /// An actuator with a torque setpoint.
-pub trait Commanded: Actuator {
+pub trait Commanded: Actuator + BoxedCommanded {
     /// Starts a tick with the torque setpoint of the device, N·m: T > 0
     /// opposes growing angle.
     fn command(&mut self, torque_nm: f64);

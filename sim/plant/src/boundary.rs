@@ -1,6 +1,7 @@
 //! Boundary that holds the right end of the chain: the scene's motion, a hand that
-//! follows it, or nobody.
+//! follows it or pushes, or nobody.
 
+use crate::boxed::cloned_in_boxes;
 use crate::chain::{Body, Chain, Flow, Push, Settled};
 use crate::energy_balance::{Account, EnergyBalance};
 
@@ -38,13 +39,19 @@ pub struct Stretch {
     pub length_s: f64,
 }
 
+cloned_in_boxes!(Boundary, BoxedBoundary);
+
 /// Holds the right end.
-pub trait Boundary: Send {
+pub trait Boundary: Send + BoxedBoundary {
     /// The motion's velocity jumps, and takes along what it can of the chain.
     fn jump(&mut self, _: f64, _: &mut Body, _: &mut dyn Chain) {}
 
     /// A step begins.
     fn begin(&mut self, _: &MotionStep) {}
+
+    /// Sets the torque of a hand that [pushes](Pushed) from now on, N·m, positive toward growing angle; nothing to
+    /// others.
+    fn push(&mut self, _torque_nm: f64) {}
 
     /// The mean velocity of the right end and the torque on the boundary, for
     /// a chain that pushes like this.
@@ -100,6 +107,10 @@ impl Boundary for Box<dyn Boundary> {
     #[inline]
     fn begin(&mut self, motion: &MotionStep) {
         self.as_mut().begin(motion);
+    }
+
+    fn push(&mut self, torque_nm: f64) {
+        self.as_mut().push(torque_nm);
     }
 
     #[inline]
@@ -271,5 +282,46 @@ impl Boundary for Released {
 
     fn settle(&mut self, _: &Stretch, body: &mut Body, next: Body, _: Flow, _: &Settled, _: f64) {
         *body = next;
+    }
+}
+
+/// Boundary of a torque: a hand that pushes the right end, and has no mass of its own.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pushed {
+    torque_nm: f64,
+    felt_nms: f64,
+    work_j: f64,
+}
+
+impl Boundary for Pushed {
+    fn push(&mut self, torque_nm: f64) {
+        self.torque_nm = torque_nm;
+    }
+
+    fn solve(&mut self, _: &Stretch, _: &Body, push: Push) -> Flow {
+        push.meets(self.torque_nm, 0.0)
+    }
+
+    fn settle(
+        &mut self,
+        stretch: &Stretch,
+        body: &mut Body,
+        next: Body,
+        flow: Flow,
+        _: &Settled,
+        _: f64,
+    ) {
+        let impulse_nms = self.torque_nm * stretch.length_s;
+        self.felt_nms += impulse_nms;
+        self.work_j += impulse_nms * flow.omega_rad_s;
+        *body = next;
+    }
+
+    fn felt_nms(&self) -> f64 {
+        self.felt_nms
+    }
+
+    fn energy(&self, _: &Body, balance: &mut EnergyBalance) {
+        balance.add("hand", "work", Account::Given, self.work_j);
     }
 }

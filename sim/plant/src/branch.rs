@@ -19,6 +19,7 @@ impl Chain for Loose {
 
 /// A chain, and a branch that ends at the same body. What is dry friction or an impact
 /// is the main chain's.
+#[derive(Clone)]
 pub struct Branched {
     main: Box<dyn Chain>,
     branch: Box<dyn Chain>,

@@ -29,6 +29,7 @@
 //! step folded again; an end of a mode inside the step is located there, the
 //! step cut in two.
 
+use crate::boxed::cloned_in_boxes;
 use crate::coil::Coil;
 use crate::energy_balance::EnergyBalance;
 use crepitus_model::Sense;
@@ -193,11 +194,19 @@ pub(crate) fn sense_of(x: f64) -> Sense {
 }
 
 /// A torque as a function of an angle, N·m and rad.
-pub type Weight = Box<dyn Fn(f64) -> f64 + Send>;
+pub trait Torque: Fn(f64) -> f64 + Send + BoxedTorque {}
+
+impl<T: Fn(f64) -> f64 + Send + Clone + 'static> Torque for T {}
+
+cloned_in_boxes!(Torque, BoxedTorque);
+cloned_in_boxes!(Chain, BoxedChain);
+
+/// Weight of what hangs on a chain.
+pub type Weight = Box<dyn Torque>;
 
 /// The chain up to one of its parts. `body` is the body at its right end; a
 /// part that separates bodies owns the one left of it.
-pub trait Chain: Send {
+pub trait Chain: Send + BoxedChain {
     /// The chain left of this part; none left of an end.
     fn left(&self) -> Option<&dyn Chain> {
         None

@@ -22,6 +22,7 @@ pub struct Kind {
 }
 
 /// A chain that ends in a spring and a damper.
+#[derive(Clone)]
 pub struct Compliance {
     left: Box<dyn Chain>,
     kind: &'static Kind,

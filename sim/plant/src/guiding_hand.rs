@@ -60,6 +60,7 @@ impl HandNumbers {
 }
 
 /// A hand that is guided.
+#[derive(Clone)]
 pub struct GuidingHand {
     numbers: HandNumbers,
     /// Weight of the leg, if it has any, and its inertia.

@@ -21,6 +21,7 @@
 pub mod actuator;
 pub mod assembly;
 pub mod boundary;
+mod boxed;
 pub mod branch;
 pub mod chain;
 mod coil;

@@ -5,7 +5,7 @@ use crate::chain::{Body, Chain, Flow, Push, Settled, Step, Verdict, Weight};
 use crate::energy_balance::{Account, EnergyBalance};
 
 /// A torque that depends on the body's motion, and an inertia.
-pub trait Load: Send {
+pub trait Load: Clone + Send + 'static {
     /// The effect that it belongs to.
     const NAME: &'static str;
     /// Column of the load: the torque, positive where it opposes growing angle.
@@ -46,6 +46,7 @@ pub trait Load: Send {
 }
 
 /// The chain up to a load.
+#[derive(Clone)]
 pub struct Loaded<L> {
     left: Box<dyn Chain>,
     load: L,

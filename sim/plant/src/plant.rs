@@ -24,6 +24,7 @@ const SHORTEST: f64 = 1e-6;
 /// A coupled plant. Its parts are those that a scene lists: in boxes, or of types that are
 /// known where it is [composed](crate::assembly::compose), and then a tick has nothing of
 /// the parts that there are not.
+#[derive(Clone)]
 pub struct Plant<A = Box<dyn Commanded>, C = Box<dyn Chain>, B = Box<dyn Boundary>> {
     actuator: A,
     chain: C,
@@ -92,6 +93,11 @@ impl<A: Actuator, C: Chain, B: Boundary> Plant<A, C, B> {
     /// The actuator, for commands between two steps.
     pub fn actuator_mut(&mut self) -> &mut A {
         &mut self.actuator
+    }
+
+    /// Sets the torque of a hand that [pushes](crate::boundary::Pushed), N·m, positive toward growing angle.
+    pub fn push(&mut self, torque_nm: f64) {
+        self.boundary.push(torque_nm);
     }
 
     /// Switches the bridge of the coil.

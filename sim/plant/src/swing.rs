@@ -13,11 +13,17 @@
 //! [`cuff`](crate::effects::cuff) and a [`limb`](crate::effects::limb) without passive moment: the
 //! [chain](crate::chain) of these parts, released, is the same brace.
 //!
+//! A real brace has more: [`Imperfections`]. A fit marginalises over them.
+//!
 //! Only the solver differs. A fit follows a swing thousands of times, and differentiates the angle by
 //! differences. So steps are ten times as long as a tick, by Runge-Kutta of the fourth order between
 //! the events, which are located within a step: that keeps the angle smooth.
 
 // All functions are `#[inline]`: the package of a fit compiles them with its own optimisation.
+
+mod imperfections;
+
+pub use imperfections::{BY_ANGLE, Imperfections};
 
 use crate::effects::drivetrain::Gear;
 
@@ -26,6 +32,13 @@ pub const STEP_S: f64 = 5e-4;
 
 /// Most changes of mode in one step; the rest of the step is integrated in the last mode.
 const MOST_CHANGES: u32 = 24;
+
+/// Damping ratios of the teeth, and of what gives way before friction slips.
+const TEETH_RATIO: f64 = 0.4;
+const PRESLIDING_RATIO: f64 = 0.3;
+
+/// Largest angle that a mode turns by in a step, rad: stiffer springs are as stiff as that.
+const STIFFEST: f64 = 1.8;
 
 /// A brace with a weight in its cuffs, all referred to the joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +59,8 @@ pub struct WeightedBrace {
     pub weight_kg_m2: f64,
     /// Viscous damping about the axis, N·m·s/rad.
     pub viscous_nms: f64,
+    /// Imperfections of the brace.
+    pub imperfections: Imperfections,
 }
 
 /// Angles and velocities of rotor, brace and weight.
@@ -76,6 +91,8 @@ struct Mode {
     sliding: Option<f64>,
     /// Sign of φ_r − φ_b where the gap is closed; `None` if it is open.
     contact: Option<f64>,
+    /// Angle at which a friction that gives way has no torque while it holds, rad.
+    anchor_rad: f64,
 }
 
 /// Initial state of a swing.
@@ -98,14 +115,69 @@ struct Step<'b> {
     hang_rad: f64,
     /// Torque of the motor, N·m.
     torque: f64,
+    /// Coulomb friction, N·m.
     limit: f64,
+    /// Stiffness and damping of the teeth; `None` where they are rigid.
+    teeth: Option<(f64, f64)>,
+    /// Stiffness and damping of a friction that holds; `None` where it is rigid.
+    presliding: Option<(f64, f64)>,
+    /// Stiffness of the cuffs, N·m/rad.
+    cuffs_nm: f64,
 }
 
-impl Step<'_> {
+impl<'b> Step<'b> {
+    #[inline]
+    fn new(n: &'b WeightedBrace, hang_rad: f64, torque: f64) -> Self {
+        let (rotor, brace) = (n.gear.inertia_kg_m2, n.brace_kg_m2);
+        let spring = |compliance: f64, inertia: f64, ratio: f64| {
+            (compliance > 0.0).then(|| {
+                let stiffness = (1.0 / compliance).min(inertia * (STIFFEST / STEP_S).powi(2));
+                (stiffness, 2.0 * ratio * (stiffness * inertia).sqrt())
+            })
+        };
+        let extra = &n.imperfections;
+        Self {
+            n,
+            hang_rad,
+            torque,
+            limit: n.gear.limit_nm(torque),
+            teeth: spring(
+                extra.teeth_rad_per_nm,
+                rotor * brace / (rotor + brace),
+                TEETH_RATIO,
+            ),
+            presliding: spring(extra.presliding_rad_per_nm, rotor, PRESLIDING_RATIO),
+            cuffs_nm: n.stiffness_nm.min(brace * (STIFFEST / STEP_S).powi(2)),
+        }
+    }
+
+    /// Returns the friction that the rotor slides against at a velocity, N·m.
+    #[inline]
+    fn limit_at(&self, angle_rad: f64, omega_rad_s: f64) -> f64 {
+        let share = self
+            .n
+            .imperfections
+            .friction_share(angle_rad - self.hang_rad, omega_rad_s);
+        self.limit * share
+    }
+
+    /// Returns the torque of a friction that holds and gives way, without its damping, N·m.
+    #[inline]
+    fn held(&self, x: &State, mode: Mode) -> f64 {
+        let stiffness = self.presliding.map_or(0.0, |spring| spring.0);
+        stiffness * (x.angle[ROTOR] - mode.anchor_rad)
+    }
+
+    /// Returns how far the teeth have given way, in the sense of the contact, rad.
+    #[inline]
+    fn pressed(&self, x: &State, side: f64) -> f64 {
+        side * (x.angle[ROTOR] - x.angle[BRACE]) - 0.5 * self.n.gap_rad
+    }
+
     /// Returns the torque of the cuffs on the brace, N·m.
     #[inline]
     fn pull(&self, x: &State) -> f64 {
-        -self.n.stiffness_nm * (x.angle[BRACE] - x.angle[WEIGHT])
+        -self.cuffs_nm * (x.angle[BRACE] - x.angle[WEIGHT])
             - self.n.damping_nms * (x.omega[BRACE] - x.omega[WEIGHT])
     }
 
@@ -118,15 +190,34 @@ impl Step<'_> {
             - n.viscous_nms * x.omega[WEIGHT]
             - n.moment_nm * (x.angle[WEIGHT] - self.hang_rad).sin())
             / n.weight_kg_m2;
-        let driven = |sense: f64| self.torque - sense * self.limit;
-        let (rotor, brace) = match (mode.contact, mode.sliding) {
-            (Some(_), Some(sense)) => {
-                let both = (driven(sense) + pull) / (rotor_kg_m2 + n.brace_kg_m2);
+        // Motor and friction; none where friction holds the rotor rigidly.
+        let driven = match (mode.sliding, self.presliding) {
+            (Some(sense), _) => {
+                Some(self.torque - sense * self.limit_at(x.angle[ROTOR], x.omega[ROTOR]))
+            }
+            (None, Some((_, damping))) => {
+                Some(self.torque - self.held(x, mode) - damping * x.omega[ROTOR])
+            }
+            (None, None) => None,
+        };
+        let (rotor, brace) = match (mode.contact, self.teeth) {
+            (Some(side), Some((stiffness, damping))) => {
+                let closing = side * (x.omega[ROTOR] - x.omega[BRACE]);
+                // They do not pull.
+                let force = side * (stiffness * self.pressed(x, side) + damping * closing).max(0.0);
+                let rotor = driven.map_or(0.0, |driven| (driven - force) / rotor_kg_m2);
+                (rotor, (force + pull) / n.brace_kg_m2)
+            }
+            (Some(_), None) => {
+                let both = driven.map_or(0.0, |driven| {
+                    (driven + pull) / (rotor_kg_m2 + n.brace_kg_m2)
+                });
                 (both, both)
             }
-            (Some(_), None) => (0.0, 0.0),
-            (None, Some(sense)) => (driven(sense) / rotor_kg_m2, pull / n.brace_kg_m2),
-            (None, None) => (0.0, pull / n.brace_kg_m2),
+            (None, _) => (
+                driven.map_or(0.0, |driven| driven / rotor_kg_m2),
+                pull / n.brace_kg_m2,
+            ),
         };
         State {
             angle: x.omega,
@@ -149,33 +240,50 @@ impl Step<'_> {
     /// Returns the distance to each event; the mode ends where one is below zero.
     #[inline]
     fn margins(&self, x: &State, mode: Mode) -> [f64; 2] {
-        let pull = self.pull(x);
-        let friction = match (mode.sliding, mode.contact) {
+        let friction = match (mode.sliding, self.presliding) {
             (Some(sense), _) => sense * x.omega[ROTOR],
-            (None, Some(_)) => self.limit - (self.torque + pull).abs(),
-            (None, None) => self.limit - self.torque.abs(),
+            (None, Some(_)) => self.limit_at(x.angle[ROTOR], 0.0) - self.held(x, mode).abs(),
+            (None, None) => self.limit_at(x.angle[ROTOR], 0.0) - self.net(x, mode).abs(),
         };
-        let teeth = match mode.contact {
-            None => 0.5 * self.n.gap_rad - (x.angle[ROTOR] - x.angle[BRACE]).abs(),
-            Some(side) => side * (self.n.brace_kg_m2 * self.rate(x, mode).omega[BRACE] - pull),
+        let teeth = match (mode.contact, self.teeth) {
+            (None, _) => 0.5 * self.n.gap_rad - (x.angle[ROTOR] - x.angle[BRACE]).abs(),
+            (Some(side), Some(_)) => self.pressed(x, side),
+            (Some(side), None) => {
+                side * (self.n.brace_kg_m2 * self.rate(x, mode).omega[BRACE] - self.pull(x))
+            }
         };
         [friction, teeth]
+    }
+
+    /// Ends the sliding in a sense at rest: friction holds, where it can.
+    #[inline]
+    fn hold(&self, x: &State, mode: &mut Mode, sense: f64) {
+        let limit = self.limit_at(x.angle[ROTOR], 0.0);
+        if let Some((stiffness, _)) = self.presliding {
+            // A rounding less than the limit, which it would pass at once.
+            mode.anchor_rad = x.angle[ROTOR] - sense * limit * (1.0 - 1e-9) / stiffness;
+            mode.sliding = None;
+            return;
+        }
+        let net = self.net(x, *mode);
+        mode.sliding = (net.abs() > limit).then(|| net.signum());
     }
 
     /// Changes the mode at an event.
     #[inline]
     fn change(&self, x: &mut State, mode: &mut Mode, event: usize) {
+        let is_rigid = self.teeth.is_none();
         if event == 0 {
-            match mode.sliding {
-                Some(_) => {
+            match (mode.sliding, self.presliding) {
+                (Some(sense), _) => {
                     x.omega[ROTOR] = 0.0;
-                    if mode.contact.is_some() {
+                    if mode.contact.is_some() && is_rigid {
                         x.omega[BRACE] = 0.0;
                     }
-                    let net = self.net(x, *mode);
-                    mode.sliding = (net.abs() > self.limit).then(|| net.signum());
+                    self.hold(x, mode, sense);
                 }
-                None => mode.sliding = Some(self.net(x, *mode).signum()),
+                (None, Some(_)) => mode.sliding = Some(self.held(x, *mode).signum()),
+                (None, None) => mode.sliding = Some(self.net(x, *mode).signum()),
             }
             return;
         }
@@ -185,15 +293,22 @@ impl Step<'_> {
         }
         let n = self.n;
         let side = (x.angle[ROTOR] - x.angle[BRACE]).signum();
+        mode.contact = Some(side);
+        if !is_rigid {
+            return;
+        }
         let rotor_kg_m2 = n.gear.inertia_kg_m2;
         let both = (rotor_kg_m2 * x.omega[ROTOR] + n.brace_kg_m2 * x.omega[BRACE])
             / (rotor_kg_m2 + n.brace_kg_m2);
         x.angle[ROTOR] = x.angle[BRACE] + side * 0.5 * n.gap_rad;
         x.omega[ROTOR] = both;
         x.omega[BRACE] = both;
-        mode.contact = Some(side);
-        if both != 0.0 {
-            mode.sliding = Some(both.signum());
+        match mode.sliding {
+            Some(sense) if self.presliding.is_some() && both * sense < 0.0 => {
+                self.hold(x, mode, sense);
+            }
+            _ if self.presliding.is_none() && both != 0.0 => mode.sliding = Some(both.signum()),
+            _ => {}
         }
     }
 
@@ -201,10 +316,13 @@ impl Step<'_> {
     #[inline]
     fn net(&self, x: &State, mode: Mode) -> f64 {
         self.torque
-            + if mode.contact.is_some() {
-                self.pull(x)
-            } else {
-                0.0
+            + match (mode.contact, self.teeth) {
+                (Some(_), None) => self.pull(x),
+                (Some(side), Some((stiffness, damping))) => {
+                    let closing = side * (x.omega[ROTOR] - x.omega[BRACE]);
+                    -side * (stiffness * self.pressed(x, side) + damping * closing).max(0.0)
+                }
+                (None, _) => 0.0,
             }
     }
 
@@ -286,12 +404,7 @@ impl Step<'_> {
 /// step, rad. `torques_nm` is the motor's torque in each step, N·m.
 #[inline]
 pub fn swing(brace: &WeightedBrace, hang_rad: f64, begin: &Begin, torques_nm: &[f64]) -> Vec<f64> {
-    let step = |torque: f64| Step {
-        n: brace,
-        hang_rad,
-        torque,
-        limit: brace.gear.limit_nm(torque),
-    };
+    let step = |torque: f64| Step::new(brace, hang_rad, torque);
     let first = torques_nm.first().copied().unwrap_or(0.0);
     let (mut x, mut mode) = start(&step(first), begin);
     (torques_nm.iter())
@@ -310,7 +423,7 @@ fn start(step: &Step<'_>, begin: &Begin) -> (State, Mode) {
     let sense = begin.omega_rad_s.signum();
     let (angle, omega) = (begin.angle_rad, begin.omega_rad_s);
     let sum = n.gear.inertia_kg_m2 + n.brace_kg_m2 + n.weight_kg_m2;
-    let dry = step.torque - sense * step.limit;
+    let dry = step.torque - sense * step.limit_at(angle, omega);
     // The acceleration of all as one body, about where the weight is.
     let fall = -n.moment_nm * (angle - step.hang_rad).sin() - n.viscous_nms * omega;
     let together = (dry + fall) / sum;
@@ -319,8 +432,12 @@ fn start(step: &Step<'_>, begin: &Begin) -> (State, Mode) {
     let side = if teeth >= 0.0 { 1.0 } else { -1.0 };
     // The cuffs transmit what accelerates the weight beyond its fall.
     let transmitted = n.weight_kg_m2 * together - fall;
-    let brace = angle - side * 0.5 * n.gap_rad;
-    let bent = transmitted / n.stiffness_nm + begin.deflection_rad;
+    // The teeth, too, have given way.
+    let pressed = step
+        .teeth
+        .map_or(0.0, |(stiffness, _)| teeth.abs() / stiffness);
+    let brace = angle - side * (0.5 * n.gap_rad + pressed);
+    let bent = transmitted / step.cuffs_nm + begin.deflection_rad;
     (
         State {
             angle: [angle, brace, brace - bent],
@@ -329,6 +446,7 @@ fn start(step: &Step<'_>, begin: &Begin) -> (State, Mode) {
         Mode {
             sliding: Some(sense),
             contact: Some(side),
+            anchor_rad: angle,
         },
     )
 }

@@ -35,6 +35,16 @@ impl<F: Precise> AnyJoint<F> {
     }
 }
 
+impl<F: Real> Clone for AnyJoint<F> {
+    fn clone(&self) -> Self {
+        Self {
+            joint: self.joint.boxed(),
+            output: self.output,
+            events: self.events.clone(),
+        }
+    }
+}
+
 /// A precision whose rungs are compiled in this crate.
 pub trait Precise: Real {
     /// See [`AnyJoint::new`].
@@ -76,7 +86,7 @@ struct Boxed;
 impl<F: Real> JointVisitor<F> for Boxed {
     type Output = AnyJoint<F>;
 
-    fn visit<J: StickSlip<F>>(self, joint: J) -> AnyJoint<F> {
+    fn visit<J: StickSlip<F> + Clone>(self, joint: J) -> AnyJoint<F> {
         AnyJoint {
             output: output(&joint),
             joint: Box::new(joint),
@@ -87,6 +97,7 @@ impl<F: Real> JointVisitor<F> for Boxed {
 
 /// [`StickSlip`] without type parameters.
 trait Erased<F: Real> {
+    fn boxed(&self) -> Box<dyn Erased<F> + Send>;
     fn step(&mut self, shaft: &ShaftStep<F>, events: &mut Vec<Event<F>>) -> Output<F>;
     fn restart(&mut self, torque_nm: F, omega_rad_s: F) -> Output<F>;
     fn change_step(&mut self, coefficients: StepCoefficients<F>) -> Output<F>;
@@ -100,7 +111,11 @@ fn output<F: Real, J: StickSlip<F>>(joint: &J) -> Output<F> {
     (joint.phase(), joint.torque_nm())
 }
 
-impl<F: Real, J: StickSlip<F>> Erased<F> for J {
+impl<F: Real, J: StickSlip<F> + Clone> Erased<F> for J {
+    fn boxed(&self) -> Box<dyn Erased<F> + Send> {
+        Box::new(self.clone())
+    }
+
     fn step(&mut self, shaft: &ShaftStep<F>, events: &mut Vec<Event<F>>) -> Output<F> {
         StickSlip::step(self, shaft, |event| events.push(event));
         output(self)

@@ -23,7 +23,7 @@ pub(crate) struct Effects {
 /// The `crepitus` effect of a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Crepitus {
-    /// The preset it started from, if any.
+    /// The preset whose numbers it has, if it started from one and none was changed.
     pub preset: Option<&'static str>,
     /// The active settings.
     pub settings: Validated<Settings>,
@@ -158,6 +158,8 @@ fn crepitus(
     };
     numbers(section, effect.parameters, settings.parameters.values_mut())?;
     section.finish()?;
+    // With other numbers it is not that knee any more.
+    let preset = preset.filter(|_| settings.parameters == start.parameters);
     Ok(Crepitus {
         preset: preset.map(|preset| preset.name),
         settings: settings

@@ -15,6 +15,8 @@
 //!
 //! [evidence_of.lead-pipe]          # where it is not that of the whole
 //! presliding_deg = "sourced"
+//!
+//! [[judged]]                       # by clinicians: see `judged`
 //! ```
 //!
 //! A user's own file has the same form, and may leave out all but the effects. A scene
@@ -22,11 +24,13 @@
 
 mod disorder;
 mod json;
+pub mod judged;
 mod severity;
 mod shipped;
 
 pub use crate::effects::is_disorder;
 pub use disorder::{Disorder, Evidence, Level};
+pub use judged::Judgement;
 pub use shipped::{FILES, Joint, PresetFile, find, joints, shipped, similar_name};
 
 use crate::device_checks::{caps_warning, convention_refusal};
@@ -69,6 +73,8 @@ pub struct Preset {
     pub evidence: Option<Evidence>,
     /// Source of the numbers.
     pub source: Option<String>,
+    /// Judgements by clinicians, in the file; [`Self::judgements`] has those of the user's folder, too.
+    pub judged: Vec<Judgement>,
     /// The stick-slip object, if it is one of its effects.
     pub crepitus: Option<Crepitus>,
     /// All other effects, in the order of the table.
@@ -185,6 +191,7 @@ impl Preset {
             feel: feel?,
             evidence,
             source: source?,
+            judged: judged::judgements(&root)?,
             crepitus,
             listed,
             values: Vec::new(),
@@ -258,6 +265,9 @@ impl Preset {
                     Setting::Option(name) => writeln!(text, "{key} = {}", quoted(name)),
                 };
             }
+        }
+        for judgement in &self.judged {
+            let _ = write!(text, "\n{}", judgement.to_toml());
         }
         text
     }

@@ -20,6 +20,7 @@ mod reached;
 mod recorder;
 mod sensor;
 mod stages;
+mod stepped_plant;
 mod stepping;
 mod summary;
 mod tally;
@@ -32,6 +33,7 @@ pub use held_back::HELD_BACK_COLUMN;
 pub use joined::Joined;
 pub use lead::Lead;
 pub use probe::{AddedTime, StepTime, step_times};
+pub use stepped_plant::{Holder, MOST_TORQUE_NM, NotStepped, SteppedPlant};
 pub use summary::{
     CycleSummary, EffectSummary, EnergySummary, EnergyTerm, EventCounts, LeadSummary,
     ParameterValue, PlantEnergySummary, SUMMARY_VERSION, Summary, TankSummary, TorqueLimitSummary,
@@ -45,6 +47,7 @@ use crate::scene::{Precision, Scene, SolverChoice};
 use crate::trace::{Column, ColumnKind, EventRecord, SymptomEvent};
 use crepitus_model::SettingsError;
 use crepitus_model::solver::Solver;
+use crepitus_plant::Plant;
 use std::convert::Infallible;
 use std::time::Instant;
 use watch::{Ended, Watch, watched};
@@ -154,6 +157,16 @@ pub(crate) struct Totals {
 
 /// The columns that the trace of a scene has.
 pub fn columns(scene: &Scene) -> Vec<Column> {
+    if scene.is_coupled()
+        && let Ok(plant) = scene.assemble()
+    {
+        return columns_with(scene, Some(&plant), scene.is_held());
+    }
+    columns_with(scene, None, false)
+}
+
+/// The columns of a scene on a plant, if it has one, whose leg somebody holds, or nobody.
+fn columns_with(scene: &Scene, plant: Option<&Plant>, is_held: bool) -> Vec<Column> {
     let number = |name| Column {
         name,
         kind: ColumnKind::Number,
@@ -173,9 +186,7 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
         columns.extend(stages::listed(scene).map(|spec| number(spec.column)));
         columns.extend(scene.gives_energy().then(|| number(HELD_BACK_COLUMN)));
     }
-    if scene.is_coupled()
-        && let Ok(plant) = scene.assemble()
-    {
+    if let Some(plant) = plant {
         for spec in stages::listed(scene) {
             columns.push(number(spec.column));
             columns.extend(spec.phases.map(|phases| Column {
@@ -188,7 +199,7 @@ pub fn columns(scene: &Scene) -> Vec<Column> {
             columns.extend(device::COLUMNS);
         }
         columns.extend(plant.columns().into_iter().map(number));
-        if scene.is_held() {
+        if is_held {
             columns.push(number(coupled::FELT_COLUMN));
             if plant.impacts().is_some() {
                 columns.push(number(coupled::STRUCK_COLUMN));

@@ -28,6 +28,7 @@ use crepitus_plant::boundary::Boundary;
 use crepitus_plant::chain::{Body, Chain};
 use crepitus_plant::effect::{Context, Effect, Given};
 use crepitus_plant::{Motion, Plant};
+use serde::{Deserialize, Serialize};
 use solver::{REFERENCE, read_solver, read_trace_step};
 use std::path::{Path, PathBuf};
 
@@ -87,7 +88,7 @@ pub struct Scene {
 }
 
 /// Overrides of a scene by the command line.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Overrides {
     /// Another solver.
     pub solver: Option<String>,

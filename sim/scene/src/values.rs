@@ -93,6 +93,97 @@ pub fn with_preset(now: &Values, preset: &Preset, keeps_others: bool) -> Values 
     }
 }
 
+/// Error of a value that is given by a parameter's name.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NamedError {
+    /// There is no such parameter.
+    #[error("no parameter {name:?}{}; `crepitus params list` lists them", crate::similar::question(.similar.as_deref()))]
+    Unknown {
+        /// The name.
+        name: String,
+        /// The name that is meant, probably.
+        similar: Option<String>,
+    },
+    /// The parameter is not one of a knee.
+    #[error("{0} is the brace's own; expected a parameter of an effect of the knee")]
+    NotOfKnee(String),
+    /// The value is not allowed.
+    #[error("{name} = {value}: expected {allowed}")]
+    Value {
+        /// The name.
+        name: String,
+        /// The value.
+        value: f64,
+        /// Valid values.
+        allowed: String,
+    },
+    /// The values contradict each other.
+    #[error("a device refuses these values together: {0:?}")]
+    Together(ValueError),
+}
+
+/// Finds a parameter of the knee that may have this value.
+///
+/// # Errors
+/// [`NamedError`].
+pub fn find_of_knee(name: &str, value: f64) -> Result<u8, NamedError> {
+    let Some((id, parameter)) = find(name) else {
+        let keys = PARAMETERS
+            .iter()
+            .map(|p| format!("{}.{}", p.group, p.key()));
+        let keys: Vec<_> = keys.collect();
+        let meant = crate::similar::similar(keys.iter().map(String::as_str), name);
+        return Err(NamedError::Unknown {
+            name: name.to_owned(),
+            similar: meant.map(str::to_owned),
+        });
+    };
+    if !is_of_knee(parameter.group) {
+        return Err(NamedError::NotOfKnee(name.to_owned()));
+    }
+    if parameter.allows(value) {
+        return Ok(id);
+    }
+    let allowed = match parameter.kind {
+        Kind::Number(spec) => format!("{} to {}", spec.min, spec.max),
+        Kind::Choice(choice) => format!("0 to {}", choice.names.len().saturating_sub(1)),
+    };
+    Err(NamedError::Value {
+        name: name.to_owned(),
+        value,
+        allowed,
+    })
+}
+
+/// The values of a device that gets the knee of a preset, with these parameters of it.
+///
+/// # Errors
+/// [`NamedError`] for the first name or value that is invalid.
+pub fn with_named<'n>(
+    now: &Values,
+    preset: &Preset,
+    named: impl IntoIterator<Item = (&'n str, f64)>,
+) -> Result<Values, NamedError> {
+    let mut values = with_preset(now, preset, false);
+    for (name, value) in named {
+        values.set(find_of_knee(name, value)?, value);
+    }
+    DeviceSettings::of(&values).map_err(NamedError::Together)?;
+    Ok(values)
+}
+
+/// Checks parameters of a preset's knee, by themselves and together.
+///
+/// # Errors
+/// As [`with_named`].
+pub fn check_named<'n>(
+    preset: &Preset,
+    named: impl IntoIterator<Item = (&'n str, f64)>,
+) -> Result<(), NamedError> {
+    with_named(&Values::default(), preset, named).map(drop)
+}
+
 /// Returns whether a group of parameters is an effect that a device renders.
 pub fn is_effect(group: &str) -> bool {
     group == crepitus::EFFECT.name || SPECS.iter().any(|spec| spec.name == group)

@@ -9,6 +9,7 @@ use crepitus_plant::{Motion, Piece};
 use std::borrow::Borrow;
 
 /// Walks through a motion, which it owns or borrows.
+#[derive(Clone)]
 pub struct Walk<M> {
     motion: M,
     piece: Piece,
@@ -132,7 +133,11 @@ impl<M: Borrow<Motion>> Walk<M> {
     }
 
     /// The motion at the time reached.
-    #[inline]
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a call of each tick, whose result would pass through memory"
+    )]
     fn body_now(&self) -> Body {
         let (angle_rad, omega_rad_s) = match &self.parabola {
             Some(parabola) => parabola.angle_and_velocity(self.time_s),
@@ -358,6 +363,7 @@ pub(crate) fn body(piece: &Piece, time_s: f64) -> Body {
 
 /// The time of step `n`: by division where the rate is a whole number, so that
 /// 20,000 steps of 50 µs are one second to the bit.
+#[derive(Clone)]
 pub(crate) struct Clock {
     step_s: f64,
     rate_hz: Option<f64>,

@@ -83,6 +83,13 @@ impl Connection {
         }
     }
 
+    /// Lets a device in this process and in real time make up for the time since the last call; others run on by themselves.
+    pub fn run_on(&mut self) {
+        if let Self::Simulated(simulated) = self {
+            simulated.run_on();
+        }
+    }
+
     /// Input of a hand that moves the leg of a device in this process.
     pub fn hand(&self) -> Option<HandInput> {
         match self {

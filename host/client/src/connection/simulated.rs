@@ -1,5 +1,6 @@
 //! A simulated device in this process, or an emulated one, as a transport. Its
-//! time advances only while the host waits, as fast as it can or in real time.
+//! time advances while the host waits, as fast as it can or in real time; in real time
+//! it [makes up](Simulated::run_on) for what passed in between, where the host says so.
 
 use crate::connection::clock::Clock;
 use crate::{Transport, TransportError};
@@ -10,7 +11,7 @@ use crepitus_scene::values::values;
 use crepitus_virtual_device::usb::cabled::CabledDevice;
 use crepitus_virtual_device::{HandInput, Leg, Start, VirtualDevice};
 use std::thread::sleep;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Timeout of a write that the device does not accept, ticks.
 const TIMEOUT_TICKS: u64 = 10_000;
@@ -32,6 +33,9 @@ struct Pace {
     clock: Clock,
     due: u64,
 }
+
+/// Ticks between two looks at the clock while a device makes up for time.
+const RUN_ON_CHECK: u64 = 1_000;
 
 /// Poll interval of a tick that is not due yet.
 const NAP: Duration = Duration::from_micros(500);
@@ -106,6 +110,22 @@ impl Simulated {
             due: 0,
         });
         self
+    }
+
+    /// Lets a device in real time make up for the time since the last call, in which the program did something else: then its
+    /// lease ends as that of a device at a port. One that is slower than real time makes up for what it can in as long.
+    pub fn run_on(&mut self) {
+        let Some(pace) = &mut self.pace else { return };
+        let away = pace.due + pace.clock.away_ticks();
+        pace.due = 0;
+        let begun = Instant::now();
+        let most = Duration::from_secs(away) / TICKS_PER_S;
+        for n in 0..away {
+            if n.is_multiple_of(RUN_ON_CHECK) && begun.elapsed() > most {
+                break;
+            }
+            self.device.tick();
+        }
     }
 
     /// Advances the device by one tick, once it is due.
@@ -201,5 +221,44 @@ impl Transport for Simulated {
 
     fn name(&self) -> String {
         self.name.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Client, Error};
+    use crepitus_protocol::{Fault, State};
+    use crepitus_scene::shipped;
+
+    fn device() -> Simulated {
+        Simulated::of(&shipped::examination().unwrap()).unwrap()
+    }
+
+    /// A program that is away for longer than the lease, and does not renew it.
+    #[test]
+    fn a_device_in_real_time_runs_on_and_its_lease_ends() -> Result<(), Error> {
+        let mut client = Client::connect(device().in_real_time())?;
+        client.zero()?;
+        client.arm()?;
+        let before = client.now();
+        sleep(Duration::from_millis(400));
+        client.transport_mut().run_on();
+        assert!(client.now() >= before + Duration::from_millis(399));
+        let status = client.status()?;
+        assert_ne!(status.state, State::Armed);
+        assert!(!client.is_armed());
+        assert_eq!(status.drive_fault, Fault::LeaseExpired.code());
+        Ok(())
+    }
+
+    #[test]
+    fn a_device_without_a_clock_stands_still() -> Result<(), Error> {
+        let mut client = Client::connect(device())?;
+        let before = client.now();
+        sleep(Duration::from_millis(20));
+        client.transport_mut().run_on();
+        assert_eq!(client.now(), before);
+        Ok(())
     }
 }

@@ -3,10 +3,10 @@
 
 mod chart;
 mod page;
-pub(crate) mod recordings;
 mod results;
 mod table;
 
+use crate::angle_table::AngleTable;
 use crate::cli::{Force, above_zero, tolerance};
 use crate::failure::{Failure, print, print_json, warn};
 use crate::interrupt;
@@ -17,7 +17,8 @@ use clap::{Args, ValueHint};
 use crepitus_files::json_path;
 use crepitus_files::output::NewFile;
 use crepitus_identify::DEVIATIONS;
-use crepitus_identify::brace::{Refusal, Weight, identify};
+use crepitus_identify::brace::{Refusal, Weight, identify, summary};
+use crepitus_identify::files::{NM_PER_A, SwingColumns, read_swings};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -31,6 +32,8 @@ Examples:
       --weight-inertia-kg-m2 0.23 --out out/brace
   crepitus identify swing --weight-kg 2.5 --lever-m 0.25 \\
       --scene-out brace.toml
+  crepitus identify swing.csv --angle phi --unit rad --weight-kg 2.5 \\
+      --lever-m 0.25
   crepitus record simulated --device sim --scene weight-in-the-brace --for 8s
   crepitus identify simulated --weight-kg 2.44 --lever-m 0.2477 \\
       --weight-inertia-kg-m2 0.2202
@@ -49,7 +52,7 @@ torque, the weight is checked, too.
 A quantity that a recording does not show is not reported; the text says why and what to do. Intervals are those of 95 %. \
 Exit code 1: the recordings are not those of a weight that swings freely; the text says why.")]
 pub(crate) struct Arguments {
-    /// Recordings of one weight in one brace, as `crepitus record` writes them.
+    /// Recordings of one weight in one brace, as `crepitus record` writes them, or tables of time and angle such as CSV.
     #[arg(required = true, value_hint = ValueHint::FilePath)]
     recordings: Vec<PathBuf>,
 
@@ -80,6 +83,17 @@ pub(crate) struct Arguments {
     /// File for the identified values as [effects.…] tables of a scene; `-` is standard output.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     scene_out: Option<PathBuf>,
+
+    #[command(flatten)]
+    table: AngleTable,
+
+    /// Column of the motor's current in a table, A [default: current_a if there is one].
+    #[arg(long, value_name = "COLUMN")]
+    current: Option<String>,
+
+    /// Torque at the joint per ampere without losses: torque constant times gear ratio, of a table with a current.
+    #[arg(long, value_name = "NM_PER_A", default_value_t = NM_PER_A)]
+    nm_per_a: f64,
 
     #[command(flatten)]
     force: Force,
@@ -121,7 +135,17 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let prepare = |out| folder(out, claim.clone(), results::NAMES);
     let prepared = out.map(prepare).transpose()?;
     interrupt::listen();
-    let recordings = recordings::read(&arguments.recordings)?;
+    let columns = SwingColumns {
+        table: arguments.table.columns(),
+        current: arguments.current.clone(),
+        nm_per_a: arguments.nm_per_a,
+    };
+    let mut progress = Progress::of_reading();
+    let files = &arguments.recordings;
+    let recordings = read_swings(files, &columns, &mut |text| warn(text), &mut |share| {
+        progress.reached(share);
+        !interrupt::requested()
+    })?;
     let mut progress = Progress::of_study();
     let found = identify(&recordings, &weight, torque_deviation, &mut |share| {
         progress.reached(share);
@@ -132,7 +156,7 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         Refusal::Interrupted => Failure::interrupted(),
         refusal => Failure::Work(format!("nothing is identified: {refusal}")),
     })?;
-    let summary = table::summary(&brace, &weight);
+    let summary = summary(&brace, &weight);
     if let (Some(out), Some(folder)) = (out, prepared) {
         results::write(out, folder, &brace, &summary)?;
     }

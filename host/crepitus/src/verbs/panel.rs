@@ -12,7 +12,7 @@ use crate::output::to_stdout;
 use clap::Args;
 use crepitus_client::Client;
 use crepitus_files::output::temporary_in;
-use crepitus_panel::{Links, Panel, Settings, Source};
+use crepitus_panel::{Experiments, Links, Panel, Settings, Source};
 use crepitus_recording::{Damage, Recording};
 use lan::Lan;
 use program::ThisProgram;
@@ -29,6 +29,7 @@ Examples:
   crepitus panel --device sim                   # without a device
   crepitus panel --or-sim                       # simulated without a brace
   crepitus panel --sessions my-lessons          # lessons are stored there
+  crepitus panel --experiments protocols        # thresholds, A or B, realism
   crepitus panel --replay monday.parquet --replay tuesday.parquet
   crepitus panel --lan auto                     # for a class, with TLS
 
@@ -47,6 +48,10 @@ pub(crate) struct Arguments {
     /// Store sessions and recordings in this folder [default: store nothing].
     #[arg(long, value_name = "FOLDER")]
     sessions: Option<PathBuf>,
+
+    /// Offer the protocols (*.toml) of this folder as experiments; answers go to `study` in it [default: none].
+    #[arg(long, value_name = "FOLDER", conflicts_with = "replay")]
+    experiments: Option<PathBuf>,
 
     /// Show recordings instead of a device; twice to compare two.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["device", "sessions"])]
@@ -76,10 +81,12 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let Some(folder) = &arguments.sessions {
         probe(folder)?;
     }
+    let experiments = arguments.experiments.as_deref().map(Experiments::open);
     let settings = Settings {
         port: arguments.port,
         lan: arguments.lan.map(Lan::address).transpose()?,
         sessions: arguments.sessions.clone(),
+        experiments: experiments.transpose().map_err(Failure::input)?,
         recordings: arguments.replay.clone(),
     };
     interrupt::listen();

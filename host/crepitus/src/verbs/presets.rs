@@ -96,8 +96,11 @@ fn list(own: &[(Preset, PathBuf)]) -> String {
 fn line(preset: &Preset) -> String {
     let text = preset.feel.as_ref().or(preset.title.as_ref());
     let text = text.map_or("", String::as_str);
+    let judgements = preset.judgements();
+    let clinicians = judgements.iter().map(|j| j.clinicians).max();
+    let judged = clinicians.map_or_else(String::new, |n| format!(" (judged by {n} clinicians)"));
     let line = format!(
-        "  {:20} {:8}  {text}",
+        "  {:20} {:8}  {text}{judged}",
         preset.name,
         evidence(preset.evidence)
     );
@@ -123,6 +126,9 @@ fn shown(preset: &Preset, file: Option<&Path>) -> String {
         if let Some(line) = line {
             let _ = writeln!(text, "  {key:9} {line}");
         }
+    }
+    for judgement in preset.judgements() {
+        let _ = writeln!(text, "  {:9} {}", "judged", judgement.to_text());
     }
     for effect in preset.effects() {
         let values = preset.values.iter().filter(|v| v.effect == effect.name);

@@ -1,5 +1,6 @@
 //! `crepitus sweep SCENE --vary PATH=VALUES …`: many runs of a scene, a row each.
 
+mod again;
 mod estimate;
 mod merge;
 mod progress;
@@ -14,8 +15,8 @@ use crepitus_files::json_path;
 use crepitus_scene::Overrides;
 use crepitus_scene::shipped::Source;
 use crepitus_studies::sweep::{
-    Axis, Design, Format, Opening, Plan, Points, Sampled, Shard, Store, StoreError, TableError,
-    Written, run_all, totals, traced,
+    Axis, Design, Format, Opening, Plan, Points, Recipe, Sampled, Shard, Store, StoreError,
+    TableError, Written, run_all, totals, traced,
 };
 use progress::{End, Progress};
 use serde_json::json;
@@ -42,6 +43,7 @@ Examples:
   crepitus sweep low-speed --vary … --estimate=1e7   # what that would cost
   crepitus sweep low-speed --vary … --shard 3/16     # a part, on any computer
   crepitus sweep --merge out/sweep-low-speed         # the table of all parts
+  crepitus sweep --again out/sweep-low-speed         # the same once more
 
 VALUES: FROM:TO:linN or FROM:TO:logN, N values with both ends; a list A,B,C; for --latin and --sobol \
 FROM:TO, FROM:TO:log or a list. A grid runs every combination, the last --vary is the fastest.
@@ -52,7 +54,7 @@ reason in the column `failure`. Rows do not depend on the number of cores. The s
 it was stopped or killed.")]
 pub(crate) struct Arguments {
     /// Scene file, name of a scene that ships, or summary.json of a run.
-    #[arg(required_unless_present = "merge", conflicts_with = "merge")]
+    #[arg(required_unless_present_any = ["merge", "again"], conflicts_with_all = ["merge", "again"])]
     scene: Option<PathBuf>,
 
     /// A key of the scene and its values; once for each that varies.
@@ -91,8 +93,8 @@ pub(crate) struct Arguments {
     force: Force,
 
     /// parquet or csv [default: parquet in programs that are built with it].
-    #[arg(long, value_name = "FORMAT", default_value = Format::DEFAULT.name(), hide_default_value = true)]
-    format: Format,
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<Format>,
 
     /// Run part I of N; `--merge` makes the table when all are done.
     #[arg(long, value_name = "I/N")]
@@ -106,8 +108,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
 
-    /// Run up to a thousand of the points, write nothing, and say what the sweep would cost: all
-    /// of it, or RUNS runs.
+    /// Run up to a thousand of the points for 5 s, write nothing, and say what the sweep would
+    /// cost: all of it, or RUNS runs.
     #[arg(
         long,
         value_name = "RUNS",
@@ -123,6 +125,18 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR", num_args = 1.., conflicts_with_all = ["vary", "points", "latin", "sobol", "shard",
           "estimate", "out", "traces", "set", "as_device"])]
     merge: Option<Vec<PathBuf>>,
+
+    /// Run the sweep of this folder again, from its sweep.json alone [default of --out: DIR-again].
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["vary", "points", "latin", "sobol", "seed", "set", "as_device",
+          "merge", "estimate"])]
+    again: Option<PathBuf>,
+}
+
+impl Arguments {
+    /// Format of the table, unless another one is repeated.
+    fn format(&self) -> Format {
+        self.format.unwrap_or(Format::DEFAULT)
+    }
 }
 
 /// Parses a number of threads.
@@ -168,48 +182,94 @@ pub(crate) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     if let Some(folders) = &arguments.merge {
         return merge::run(folders, arguments, as_json);
     }
+    if let Some(folder) = &arguments.again {
+        return again::run(folder, arguments, as_json);
+    }
     let scene = arguments.scene.as_deref().unwrap_or(Path::new(""));
     let plan = plan(arguments, scene)?;
-    let threads = arguments.threads.unwrap_or_else(cores);
     interrupt::listen();
     if let Some(extent) = arguments.estimate {
         let runs = match extent {
             Extent::All => plan.runs(),
             Extent::Runs(runs) => runs,
         };
+        let threads = arguments.threads.unwrap_or_else(cores);
         return estimate::run(&plan, runs, threads, as_json);
     }
     let out = match &arguments.out {
         Some(out) => out.clone(),
         None => results::named_after(scene, "sweep-", "")?,
     };
-    let inputs = plan.inputs().into_iter().chain([scene.to_owned()]);
-    let claim = (arguments.force).claim("sweep", inputs.chain(arguments.points.clone()));
+    let inputs = [scene.to_owned()]
+        .into_iter()
+        .chain(arguments.points.clone());
+    let outcome = run_into(&out, &plan, arguments, inputs, arguments.format())?;
+    outcome.print(&plan, &out, as_json)
+}
+
+/// Result of a command.
+enum Outcome {
+    /// Table, and the runs that it took.
+    Table(Written, Option<Ran>),
+    /// Parts of a shard.
+    Shard(Box<Store>, Shard, Ran),
+}
+
+impl Outcome {
+    fn print(&self, plan: &Plan, out: &Path, as_json: bool) -> Result<(), Failure> {
+        match self {
+            Self::Table(table, ran) => done(plan, table, ran.as_ref(), as_json),
+            Self::Shard(store, shard, ran) => shard_done(store, *shard, out, ran, as_json),
+        }
+    }
+}
+
+/// Runs a plan, or the shard of it that is wanted, into a folder.
+fn run_into(
+    out: &Path,
+    plan: &Plan,
+    arguments: &Arguments,
+    inputs: impl Iterator<Item = PathBuf>,
+    format: Format,
+) -> Result<Outcome, Failure> {
+    let threads = arguments.threads.unwrap_or_else(cores);
+    let inputs = plan.inputs().into_iter().chain(inputs);
     let opening = Opening {
         shard: arguments.shard.unwrap_or(Shard::WHOLE),
-        format: arguments.format,
+        format,
         traces: arguments.traces,
-        claim,
+        claim: arguments.force.claim("sweep", inputs),
     };
-    let mut store = Store::create(&out, plan.identity(), &opening).map_err(store_failure)?;
+    let commit = option_env!("CREPITUS_COMMIT");
+    let recipe = Recipe::of(plan, commit);
+    let store = Store::create(out, plan.identity(), &recipe, &opening);
+    let mut store = store.map_err(store_failure)?;
+    if let (Some(then), Some(now)) = (store.commit(), commit)
+        && then != now
+    {
+        warn(format!(
+            "the sweep in {} was begun by commit {then}, and this program is of {now}: its rows may differ",
+            out.display()
+        ));
+    }
     if let Some(table) = store.table() {
-        return done(&plan, &table, None, as_json);
+        return Ok(Outcome::Table(table, None));
     }
     let points = arguments
         .shard
         .map_or(0..plan.runs(), |shard| shard.points(plan.runs()));
     let begun = Instant::now();
-    let (runs, threads) = run_points(arguments, &plan, points, threads, &mut store)?;
+    let (runs, threads) = run_points(arguments, plan, points, threads, &mut store)?;
     let ran = Ran {
         runs,
         threads,
         wall_s: begun.elapsed().as_secs_f64(),
     };
     if let Some(shard) = arguments.shard {
-        return shard_done(&store, shard, &out, &ran, as_json);
+        return Ok(Outcome::Shard(Box::new(store), shard, ran));
     }
-    let table = table(&mut store, arguments.format, &out)?;
-    done(&plan, &table, Some(&ran), as_json)
+    let table = table(&mut store, format, out)?;
+    Ok(Outcome::Table(table, Some(ran)))
 }
 
 /// Runs of a sweep that this program has carried out.
@@ -333,6 +393,7 @@ fn store_failure(error: StoreError) -> Failure {
             "{error}: name another folder with --out, or replace it with --force"
         )),
         StoreError::Output(error) => error.into(),
+        StoreError::Scene(error) => error.into(),
         StoreError::Running { .. } => Failure::Input(format!(
             "{error}: wait until it has ended, or name another folder with --out"
         )),

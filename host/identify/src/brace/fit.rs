@@ -24,10 +24,11 @@
 
 use crate::brace::numbers::{NUMBERS, place};
 use crate::brace::prior::Prior;
-use crate::brace::problem::Problem;
+use crate::brace::problem::{Problem, Sought};
 use crate::brace::residuals::{LEAST_DEVIATION, effective_deviation, rms};
 use crate::brace::swing::Swing;
-use crate::descent::{Ending, descend};
+use crate::descent::{Ending, LeastSquares, descend};
+use crate::parallel::in_parallel;
 use crepitus_plant::swing::STEP_S;
 use nalgebra::{DMatrix, DVector};
 
@@ -38,12 +39,19 @@ const LATE_S: [f64; 2] = [3.5, f64::INFINITY];
 /// Most iterations and relative decrease of the cost at convergence, of the beginnings; and of the
 /// whole.
 const EARLY_STEPS: u32 = 12;
+const FIRST_STEPS: u32 = 8;
 const EARLY_GAIN: f64 = 1e-3;
 const MOST_STEPS: u32 = 30;
 const SMALLEST_GAIN: f64 = 1e-6;
 
 /// Factors of some parameters for other initial guesses.
-const AROUND: [[(usize, f64); 3]; 5] = [
+const AROUND: [[(usize, f64); 3]; 6] = [
+    // A weight that is bolted to the brace.
+    [
+        (place::STIFFNESS, 40.0),
+        (place::DAMPING, 5.0),
+        (place::GAP, 1.0),
+    ],
     [
         (place::ROTOR, 1.4),
         (place::STIFFNESS, 1.6),
@@ -92,7 +100,14 @@ pub(crate) struct Fit {
     pub(crate) hangs_rad: Vec<f64>,
     /// Root mean square of the residuals, rad.
     pub(crate) rms_rad: f64,
+    /// Standard deviation of an angle in the cost, rad.
+    deviation_rad: f64,
+    /// All that was fitted.
+    vector: DVector<f64>,
 }
+
+/// Starts of the imperfections: compliance before friction slips, and of the teeth, rad/(N·m).
+const COMPLIANT: [(f64, f64); 3] = [(2e-5, 3e-5), (2e-5, 3e-4), (1e-4, 3e-5)];
 
 impl Fit {
     /// Fits all swings from the initial guess; `None` if the equations have no solution.
@@ -129,6 +144,62 @@ impl Fit {
         Problem::of(swings, recordings, prior).whole(near)
     }
 
+    /// Fits the imperfections, too, from a fit without.
+    pub(crate) fn refined(
+        &self,
+        swings: &[Swing],
+        recordings: usize,
+        prior: &Prior,
+        sought: Sought,
+    ) -> Option<Self> {
+        let problem = || {
+            let mut problem = Problem::of(swings, recordings, prior);
+            (problem.sought, problem.horizon) = (sought, usize::MAX);
+            problem.weight = 1.0 / self.deviation_rad.powi(2);
+            problem.is_rough = true;
+            problem
+        };
+        // From one that has them already, on from there.
+        let is_first = self.vector[place::TEETH] == 0.0;
+        let starts = &COMPLIANT[..if is_first { COMPLIANT.len() } else { 1 }];
+        let near = in_parallel(starts, |(presliding, teeth)| {
+            let mut start = self.vector.clone();
+            if is_first {
+                (start[place::PRESLIDING], start[place::TEETH]) = (*presliding, *teeth);
+            }
+            let near = problem().descend(start, FIRST_STEPS, EARLY_GAIN)?;
+            Some((problem().cost(&near), near))
+        });
+        let (_, near) = (near.into_iter().flatten()).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        problem().ended(near)
+    }
+
+    /// Returns whether one step towards a wrong scale of the encoder is worth a fit.
+    pub(crate) fn suspects_encoder(
+        &self,
+        swings: &[Swing],
+        recordings: usize,
+        prior: &Prior,
+    ) -> bool {
+        /// Step of the scale, as a share, and in standard deviations.
+        const SOME: f64 = 0.003;
+        const UNLIKELY: f64 = 1.5;
+        let mut problem = Problem::of(swings, recordings, prior);
+        (problem.sought, problem.horizon) = (Sought::OfEncoder, usize::MAX);
+        problem.weight = 1.0 / self.deviation_rad.powi(2);
+        let equations = problem.equations(&self.vector);
+        let Some(inverse) = equations
+            .normal
+            .cholesky()
+            .map(|cholesky| cholesky.inverse())
+        else {
+            return false;
+        };
+        let step = (inverse.row(place::ENCODER) * &equations.right)[0];
+        let deviation = inverse[(place::ENCODER, place::ENCODER)].max(0.0).sqrt();
+        step.abs() > SOME && step.abs() > UNLIKELY * deviation
+    }
+
     /// Returns the standard deviation of a parameter.
     pub(crate) fn deviation(&self, at: usize) -> f64 {
         self.covariance[(at, at)].max(0.0).sqrt()
@@ -143,6 +214,7 @@ impl<'s> Problem<'s> {
             prior: *prior,
             horizon: 0,
             weight: 1.0 / FIRST_DEVIATION.powi(2),
+            sought: Sought::Nothing,
             is_rough: false,
         }
     }
@@ -152,12 +224,19 @@ impl<'s> Problem<'s> {
         let mut vector = self.along(near, &LATE_S)?;
         self.weight = 1.0 / LEAST_DEVIATION.powi(2);
         vector = self.descend(vector, MOST_STEPS, EARLY_GAIN)?;
+        self.ended(vector)
+    }
+
+    /// Settles the weight of the data, and computes the covariance.
+    fn ended(mut self, mut vector: DVector<f64>) -> Option<Fit> {
+        let mut deviation_rad = LEAST_DEVIATION;
         // The weight of the data against what was known before follows from what is left.
         for _ in 0..3 {
-            let deviation = effective_deviation(&self.residuals(&vector));
-            self.weight = 1.0 / deviation.powi(2);
+            deviation_rad = effective_deviation(&self.residuals(&vector));
+            self.weight = 1.0 / deviation_rad.powi(2);
             vector = self.descend(vector, MOST_STEPS, SMALLEST_GAIN)?;
         }
+        self.is_rough = false;
         let (equations, blocks) = self.equations_by_half_swing(&vector, true);
         let inverse = equations.normal.cholesky()?.inverse();
         let mut covariance = &inverse * self.information(&vector) * &inverse;
@@ -188,6 +267,8 @@ impl<'s> Problem<'s> {
             hangs_rad: (0..self.recordings).map(|r| vector[NUMBERS + r]).collect(),
             rms_rad: rms(&residuals),
             residuals,
+            deviation_rad,
+            vector,
         })
     }
 

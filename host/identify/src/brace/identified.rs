@@ -4,13 +4,14 @@ use crate::Estimate;
 use crate::brace::fit::{Fit, GOOD_ENOUGH};
 use crate::brace::passing::Passing;
 use crate::brace::prior::Prior;
-use crate::brace::problem::{RESIDUAL_S, STRIDE};
+use crate::brace::problem::{RESIDUAL_S, STRIDE, Sought};
 use crate::brace::quantity::Quantity;
 use crate::brace::recording::{Recording, Weight};
 use crate::brace::refusal::Refusal;
 use crate::brace::shown::{Result, Shown};
 use crate::brace::swing::{Swing, swings};
-use crate::brace::{plausible, visible};
+use crate::brace::{imperfect, plausible, visible};
+use crate::parallel::in_parallel;
 use crepitus_plant::swing::STEP_S;
 
 /// Identified brace: values, quality of the fit, warnings.
@@ -104,6 +105,21 @@ pub fn identify(
     };
     let prior = Prior::of(weight, torque_deviation);
     let (all, fit) = best(recordings, &prior, progress)?;
+    if !progress(0.7) {
+        return Err(Refusal::Interrupted);
+    }
+    let count = recordings.len();
+    let refined = |fit: Fit, sought| fit.refined(&all, count, &prior, sought).unwrap_or(fit);
+    let mut fit = refined(fit, Sought::OfBrace);
+    if imperfect::is_more_than_counts(&fit) || fit.suspects_encoder(&all, count, &prior) {
+        if !progress(0.9) {
+            return Err(Refusal::Interrupted);
+        }
+        let scaled = refined(fit.clone(), Sought::OfEncoder);
+        if imperfect::is_scaled(&scaled) {
+            fit = scaled;
+        }
+    }
     let amplitude_rad = plausible::amplitude_rad(&all, &fit);
     plausible::is_explained(&all, &fit, amplitude_rad)?;
     plausible::is_possible(&fit, &prior)?;
@@ -119,7 +135,11 @@ pub fn identify(
         shown: shown.into(),
         rms_rad: fit.rms_rad,
         amplitude_rad,
-        notes: visible::notes(&fit, &prior, is_torque_seen),
+        notes: [
+            imperfect::notes(&fit),
+            visible::notes(&fit, &prior, is_torque_seen),
+        ]
+        .concat(),
         swings: all,
         fit,
     })
@@ -182,18 +202,4 @@ fn best(
         }
     }
     best.ok_or(Refusal::Singular)
-}
-
-/// Maps `work` over items, each in a thread of its own.
-fn in_parallel<T: Sync, R: Send + Default>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    std::thread::scope(|scope| {
-        let work = &work;
-        let threads: Vec<_> = (items.iter())
-            .map(|item| scope.spawn(move || work(item)))
-            .collect();
-        // A thread that has panicked has found nothing.
-        (threads.into_iter())
-            .map(|thread| thread.join().unwrap_or_default())
-            .collect()
-    })
 }

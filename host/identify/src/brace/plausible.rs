@@ -90,9 +90,12 @@ pub(crate) fn is_possible(fit: &Fit, prior: &Prior) -> Result<(), Refusal> {
         let value = fit.numbers[at];
         // What is not visible is as it was before, and never at an end.
         let is_seen = fit.deviation(at) < 0.5 * prior.deviation[at];
-        let is_at_end = value <= LEAST[at] || value >= MOST[at];
-        // A gear may have next to no friction.
-        if is_seen && is_at_end && !(at == place::FRICTION && value <= LEAST[at]) {
+        // A gear may have next to no friction, and a weight be fastened without cuffs.
+        let can_be_least = at == place::FRICTION;
+        let can_be_most = at == place::STIFFNESS;
+        let is_at_end =
+            (value <= LEAST[at] && !can_be_least) || (value >= MOST[at] && !can_be_most);
+        if is_seen && is_at_end {
             return Err(Refusal::Impossible { what, value, unit });
         }
     }

@@ -31,6 +31,15 @@ const BRACE: [(usize, f64, f64); 8] = [
     (place::DAMPING, 1.0, 3.0),
 ];
 
+/// Standard deviations of the imperfections about none, wide enough for nylon links and a dry gear.
+const IMPERFECTIONS: [(usize, f64); 3] = [
+    (place::PRESLIDING, 2e-4),
+    (place::TEETH, 5e-4),
+    (place::STRIBECK, 0.3),
+];
+const BY_ANGLE: f64 = 0.1;
+const ENCODER: f64 = 0.05;
+
 impl Prior {
     /// Returns the prior for a weight, and a torque constant with this relative standard deviation.
     pub(crate) fn of(weight: &Weight, torque_deviation: f64) -> Self {
@@ -41,6 +50,13 @@ impl Prior {
         for (at, mean, deviation) in BRACE {
             (prior.mean[at], prior.deviation[at]) = (mean, deviation);
         }
+        for (at, deviation) in IMPERFECTIONS {
+            (prior.mean[at], prior.deviation[at]) = (0.0, deviation);
+        }
+        for deviation in &mut prior.deviation[place::BY_ANGLE..place::ENCODER] {
+            *deviation = BY_ANGLE;
+        }
+        prior.deviation[place::ENCODER] = ENCODER;
         for (at, measured) in [
             (place::MOMENT, weight.moment_nm),
             (place::WEIGHT, weight.inertia_kg_m2),

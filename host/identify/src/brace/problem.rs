@@ -18,13 +18,39 @@ pub(crate) const OWN: usize = 4;
 /// rad/s.
 pub(crate) const OWN_DEVIATION: [f64; OWN] = [0.1, 3.0, 5e-3, 0.3];
 
+/// Step of a difference quotient in a compliance, rad/(N·m).
+const COMPLIANCE_STEP: f64 = 4e-6;
+
 /// Time between two residuals, s.
 pub(crate) const RESIDUAL_S: f64 = STEP_S * STRIDE as f64;
 
 /// Returns whether a parameter is a torque per something: it is in the vector as p·M₀/M, with M₀
 /// the given moment.
 pub(crate) fn is_torque(at: usize) -> bool {
-    !matches!(at, place::LOAD_LOSS | place::GAP | place::MOMENT)
+    at <= place::TORQUE_SCALE && !matches!(at, place::LOAD_LOSS | place::GAP | place::MOMENT)
+}
+
+/// Imperfections that a fit looks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Sought {
+    /// None: rigid parts, Coulomb friction.
+    Nothing,
+    /// All of the brace's.
+    OfBrace,
+    /// And a wrong scale of the encoder.
+    OfEncoder,
+}
+
+impl Sought {
+    /// Returns whether a parameter is fitted.
+    fn includes(self, at: usize) -> bool {
+        at <= place::TORQUE_SCALE
+            || match self {
+                Self::Nothing => false,
+                Self::OfBrace => at != place::ENCODER,
+                Self::OfEncoder => true,
+            }
+    }
 }
 
 pub(crate) struct Problem<'s> {
@@ -35,6 +61,8 @@ pub(crate) struct Problem<'s> {
     pub(crate) horizon: usize,
     /// Weight of a residual, 1/rad².
     pub(crate) weight: f64,
+    /// Which imperfections are fitted.
+    pub(crate) sought: Sought,
     /// One-sided differences instead of central ones.
     pub(crate) is_rough: bool,
 }
@@ -128,20 +156,22 @@ impl Problem<'_> {
         let mut numbers: [f64; NUMBERS] = std::array::from_fn(|i| vector[i]);
         numbers[place::MOMENT] = self.prior.mean[place::MOMENT];
         let own = self.own(swing_at);
+        let encoder = 1.0 + vector[place::ENCODER];
         let begin = Begin {
-            angle_rad: vector[own],
-            omega_rad_s: vector[own + 1],
+            angle_rad: vector[own] / encoder,
+            omega_rad_s: vector[own + 1] / encoder,
             deflection_rad: vector[own + 2],
             deflection_rad_s: vector[own + 3],
         };
         let steps = it.torques_nm.len().min(self.horizon);
-        let hang = vector[NUMBERS + it.recording];
+        let hang = vector[NUMBERS + it.recording] / encoder;
         let scale = numbers[place::TORQUE_SCALE];
         let torques_nm: Vec<f64> = it.torques_nm[..steps].iter().map(|t| scale * t).collect();
         let angles = swing(&weighted_brace(&numbers), hang, &begin, &torques_nm);
         std::iter::once(begin.angle_rad)
             .chain(angles)
             .step_by(STRIDE)
+            .map(|angle| encoder * angle)
             .collect()
     }
 
@@ -247,10 +277,14 @@ impl Problem<'_> {
         at: usize,
         base: &[f64],
     ) -> Vec<f64> {
-        if at == place::MOMENT {
+        if at == place::MOMENT || (at < NUMBERS && !self.sought.includes(at)) {
             return vec![0.0; base.len()];
         }
-        let step = 1e-4 * self.scale(at);
+        let step = match at {
+            // A softer spring than the stiffest that a step can follow.
+            place::PRESLIDING | place::TEETH => COMPLIANCE_STEP,
+            _ => 1e-4 * self.scale(at),
+        };
         let moved = |by: f64| {
             let mut moved = vector.clone();
             moved[at] += by;
@@ -292,7 +326,7 @@ impl LeastSquares<Dyn> for Problem<'_> {
 
     fn stepped(&self, vector: &DVector<f64>, step: &DVector<f64>) -> DVector<f64> {
         let mut next = vector + step;
-        for at in 0..NUMBERS {
+        for at in (0..NUMBERS).filter(|at| self.sought.includes(*at)) {
             next[at] = next[at].clamp(LEAST[at], MOST[at]);
         }
         next

@@ -17,6 +17,9 @@ const SOME_TORQUE_NM: f64 = 0.1;
 /// Largest interval of a visible quantity, as a share of the prior one.
 const NARROWED: f64 = 0.7;
 
+/// Stiffness from which there are no cuffs, N·m/rad.
+const RIGID_NM_PER_RAD: f64 = 1500.0;
+
 /// RMS residual of the angle that doubles the allowance for model errors, rad.
 const MORE_RAD: f64 = 2e-4;
 
@@ -53,6 +56,15 @@ pub(crate) fn result(
     let widest = f64::max(share * estimate.value.abs(), absolute);
     let is_narrow = estimate.half_width <= widest;
     let is_from_recording = fit.deviation(at) < NARROWED * prior.deviation[at];
+    let is_of_cuffs = matches!(quantity, Quantity::CuffStiffness | Quantity::CuffDamping);
+    if is_of_cuffs && fit.numbers[place::STIFFNESS] > RIGID_NM_PER_RAD {
+        return Result::NotVisible {
+            why: format!(
+                "the weight moves with the brace as if it were bolted to it ({RIGID_NM_PER_RAD:.0} N·m/rad or more): strap it in as a leg, \
+                 or do without cuffs"
+            ),
+        };
+    }
     if is_narrow && is_from_recording {
         return Result::Seen(estimate);
     }

@@ -12,7 +12,7 @@ use crepitus_identify::brace::{Brace, Quantity, QuantityResult};
 /// The page of the results.
 pub(crate) const PAGE: Page = Page {
     file: "identification.md",
-    bless: "cargo test -p crepitus-identify --test hidden_braces --test second_simulation -- --test-threads=1",
+    bless: "cargo test -p crepitus-identify --test hidden_braces --test second_simulation --test imperfections -- --test-threads=1",
 };
 
 /// A visible value with its truth, in the unit of its quantity.

@@ -2,7 +2,7 @@
 // its numbers are known.
 
 import { el, freshId, setText } from "../dom.js";
-import { evidenceTag, FIRST_DISORDER, presetText } from "../labels.js";
+import { evidenceTag, FIRST_DISORDER, judgedLines, presetText } from "../labels.js";
 import { onLanguage, text, textOr } from "../strings.js";
 import { data } from "./data.js";
 
@@ -41,6 +41,7 @@ export function describe(preset) {
       " ",
       text("knee.source", { source: preset.source }),
     ),
+    ...judgedLines(preset),
   ];
 }
 

@@ -26,6 +26,12 @@ impl<T: Transport> DeviceThread<'_, T> {
         for bin in bins.iter_mut().filter(|bin| self.pain.is_felt(bin)) {
             bin.marks.0 |= Marks::HURTS;
         }
+        if self.experiment.is_hidden(self.now_s) {
+            // How long parameters ramp, and whether torque meets a limit, tells the level.
+            for bin in &mut bins {
+                bin.marks.0 &= !(Marks::SETTLING | Marks::LIMITED);
+            }
+        }
         self.frame_at = Instant::now();
         self.frame_number = self.frame_number.wrapping_add(1);
         self.shared.watchdog.made(self.frame_number);
@@ -50,9 +56,10 @@ impl<T: Transport> DeviceThread<'_, T> {
     pub(super) fn masks(&self) -> Masks {
         let held = self.lesson.as_ref();
         let hidden = held.filter(|held| held.is_hidden(self.now_s));
+        let is_session = self.experiment.is_hidden(self.now_s);
         Masks {
-            torque: hidden.is_some_and(|held| !held.shows_curves()),
-            states: hidden.is_some(),
+            torque: is_session || hidden.is_some_and(|held| !held.shows_curves()),
+            states: is_session || hidden.is_some(),
         }
     }
 }

@@ -31,12 +31,15 @@ impl<T: Transport> DeviceThread<'_, T> {
 
     /// Sends the torques since the last frame to pages that listen; none in a trial that hides them, but of a simulated
     /// leg. A brace is heard and felt, blind or not: whoever moves a leg by pointer hears it, or has nothing that tells
-    /// a slight crepitus.
+    /// a slight crepitus. In an experiment numbers would tell the level: none at all.
     pub(super) fn publish_samples(&mut self) {
         let heard = std::mem::take(&mut self.heard);
         let masks = self.masks();
         let is_hidden = masks.torque && self.hand.is_none();
         if heard.torques_nm.is_empty() || is_hidden {
+            return;
+        }
+        if self.experiment.is_hidden(self.now_s) {
             return;
         }
         let header = Header {

@@ -41,7 +41,7 @@ impl<T: Transport> DeviceThread<'_, T> {
     }
 
     /// A preset that ships, one of the user's own, or the healthy knee.
-    fn preset_of(&self, name: &str) -> Result<Preset, String> {
+    pub(super) fn preset_of(&self, name: &str) -> Result<Preset, String> {
         if name == HEALTHY {
             return Ok(Preset::default());
         }
@@ -210,7 +210,10 @@ impl<T: Transport> DeviceThread<'_, T> {
             HEALTHY => Ok(Knee::healthy()),
             name => self.preset_of(name).map(|preset| Knee::from(&preset)),
         };
-        let now = self.knee_name().and_then(|name| knee_of(&name).ok());
+        // In an experiment whoever runs it is blind, too.
+        let is_shown = !self.experiment.is_hidden(self.now_s);
+        let now = self.knee_name().filter(|_| is_shown);
+        let now = now.and_then(|name| knee_of(&name).ok());
         let coming = self.lesson.as_ref().map(Held::lesson);
         let coming = coming.filter(|lesson| !lesson.ended() && !lesson.began());
         let next = coming.map(Lesson::knee);
@@ -232,9 +235,11 @@ impl<T: Transport> DeviceThread<'_, T> {
         preset_of(&self.values, all).map(|preset| preset.name.clone())
     }
 
-    fn check_open(&self) -> Result<(), String> {
+    pub(super) fn check_open(&self) -> Result<(), String> {
         if self.is_hidden() {
-            return Err("a blind trial is running: end the lesson first".to_owned());
+            return Err(
+                "a blind trial is running: end the lesson or leave the session first".to_owned(),
+            );
         }
         Ok(())
     }
@@ -242,6 +247,6 @@ impl<T: Transport> DeviceThread<'_, T> {
     /// Returns whether pages must not see which knee it is.
     pub(super) fn is_hidden(&self) -> bool {
         let held = self.lesson.as_ref();
-        held.is_some_and(|held| held.is_hidden(self.now_s))
+        held.is_some_and(|held| held.is_hidden(self.now_s)) || self.experiment.is_hidden(self.now_s)
     }
 }

@@ -36,7 +36,7 @@ pub(super) struct Held {
 }
 
 /// Time in which the torque of a knee that was left has ended: parameters ramp.
-const SETTLED_S: f64 = 1.0;
+pub(super) const SETTLED_S: f64 = 1.0;
 
 impl Held {
     fn new(session: Session, folder: Option<SessionFolder>) -> Self {
@@ -110,8 +110,9 @@ impl Held {
 }
 
 impl<T: Transport> DeviceThread<'_, T> {
-    /// Rejects a lesson while another one is running.
+    /// Rejects a lesson or a session while another one is running.
     pub(super) fn check_no_lesson(&self) -> Result<(), String> {
+        self.experiment.check_none()?;
         if let Some(held) = &self.lesson
             && !held.session.lesson.ended()
         {

@@ -30,6 +30,13 @@ impl<T: Transport> DeviceThread<'_, T> {
             let Some(order) = self.next_order(is_over) else {
                 return;
             };
+            if matches!(
+                order.request,
+                Request::Experiments | Request::ExperimentResults
+            ) {
+                self.look_at_study(order);
+                continue;
+            }
             let outcome = self.check(&order).and_then(|()| {
                 let Order { page, role, .. } = order;
                 match order.request {

@@ -67,6 +67,8 @@ impl<T: Transport> DeviceThread<'_, T> {
                     .to_owned(),
             );
         };
+        // It would hold the levels.
+        self.experiment.check_none()?;
         if self.lesson.is_some() {
             return Err("the lesson records each trial by itself".to_owned());
         }

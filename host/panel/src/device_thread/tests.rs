@@ -1,4 +1,5 @@
 mod examination;
+mod experiments;
 mod lessons;
 mod orders;
 
@@ -140,7 +141,7 @@ fn device_thread(program: &Alone) -> DeviceThread<'_, Flood> {
     let links = Invitations::default();
     let shared = Shared::new(tokens, Value::Null, links, orders, questions);
     let shared = Arc::new(shared);
-    DeviceThread::new(client, program, shared, inbox, None, hand).expect("it answers")
+    DeviceThread::new(client, program, shared, inbox, None, None, hand).expect("it answers")
 }
 
 /// Torque ends with what the device thread sends, not with the lease.

@@ -17,13 +17,13 @@
 
 mod keys;
 
-use crate::lesson::finding::Finding;
 use crate::lesson::report::{Text, report};
 use crate::lesson::session::{Session, SessionError};
 use crepitus_files::input::{self, InputError};
 use crepitus_files::names::plain;
 use crepitus_files::output::{Claim, Hashed, OutputError, OwnedFolder, private_in};
 use crepitus_scene::preset::Level;
+use crepitus_studies::experiment::finding::Finding;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

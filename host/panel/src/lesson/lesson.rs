@@ -34,16 +34,14 @@ mod students;
 pub use error::{BeginError, LessonError};
 pub(crate) use students::{check_pseudonym, is_same_name};
 
-use crate::lesson::finding::{Finding, Knee, find_level, level_name};
-use crate::lesson::order;
 use crate::lesson::plan::{CheckedPlan, Feedback, Plan, PlannedKnee};
 use crepitus_scene::preset::Level;
+use crepitus_studies::experiment::finding::{Finding, Knee, find_level, level_name};
+use crepitus_studies::experiment::order;
+pub use crepitus_studies::experiment::order::MOST_SEED;
 use error::MOST_NOTE;
 use serde::{Deserialize, Serialize};
 use students::check_students;
-
-/// Largest seed: a number that JavaScript, JSON and a person's note keep exactly, 2⁵³ - 1.
-pub const MOST_SEED: u64 = (1 << 53) - 1;
 
 /// Least share of the time from the start of a trial to an answer in which the motor was driven, for the
 /// answer to count.

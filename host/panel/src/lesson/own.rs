@@ -2,10 +2,10 @@
 //!
 //! It holds nothing of the other students, and of a knee only what is revealed.
 
-use crate::lesson::finding::Knee;
 use crate::lesson::lesson::{Answer, Lesson};
 use crate::lesson::summary::{Scores, Summary};
 use crate::lesson::view::{AnswerView, Choices};
+use crepitus_studies::experiment::finding::Knee;
 use serde::Serialize;
 
 /// A lesson as a student sees it.

@@ -20,8 +20,8 @@
 //! not give the knee away. Only `title` and one `[[knee]]` are required. The page sends the same as JSON, its list named
 //! `knees`.
 
-use crate::lesson::finding::{HEALTHY, Knee};
 use crepitus_scene::{preset, similar};
+use crepitus_studies::experiment::finding::{HEALTHY, Knee};
 use serde::{Deserialize, Serialize};
 
 /// Most trials of a lesson.

@@ -5,11 +5,11 @@
 
 mod words;
 
-use crate::lesson::finding::Finding;
 use crate::lesson::lesson::Answer;
 use crate::lesson::session::Session;
 use crate::lesson::summary::{Confusion, Scores, Summary};
 use crepitus_pages::plot::page;
+use crepitus_studies::experiment::finding::Finding;
 use maud::{Markup, html};
 use words::Words;
 

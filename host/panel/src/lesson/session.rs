@@ -1,8 +1,8 @@
 //! A session: a lesson that is held, and what its report needs. `session.json` holds all of it.
 
-use crate::lesson::finding::Knee;
 use crate::lesson::lesson::{Answer, Lesson, Note};
 use crate::lesson::plan::{CheckedPlan, Plan};
+use crepitus_studies::experiment::finding::Knee;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

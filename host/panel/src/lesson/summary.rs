@@ -1,9 +1,9 @@
 //! Results of a lesson, for every student and for all together.
 
-use crate::lesson::finding::{Finding, Knee};
 use crate::lesson::lesson::{Answer, Lesson};
-use crate::lesson::statistics::{Kappa, Table, Weights};
 use crepitus_scene::preset::{Disorder, Level};
+use crepitus_studies::experiment::agreement::{Kappa, Table, Weights};
+use crepitus_studies::experiment::finding::{Finding, Knee};
 use serde::Serialize;
 
 /// Results of a lesson: `summary` of the page's message.

@@ -3,11 +3,11 @@
 //! The message holds no knee that is hidden, so every teacher's page gets it. Viewers get its [public](View::public)
 //! part, a student [their own](crate::lesson::OwnView).
 
-use crate::lesson::finding::{Finding, Knee, level_name};
 use crate::lesson::lesson::{Answer, Lesson};
 use crate::lesson::plan::Feedback;
 use crate::lesson::summary::Summary;
 use crepitus_scene::preset::Level;
+use crepitus_studies::experiment::finding::{Finding, Knee, level_name};
 use serde::Serialize;
 
 /// A lesson as the page shows it.

@@ -1,9 +1,11 @@
 //! Axes of a sweep, as a user writes them: `PATH=VALUES`.
 
+use serde::{Deserialize, Serialize};
+use std::fmt;
 use std::str::FromStr;
 
 /// A key of the scene, and its values.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// Name of the key with the tables before it, such as `effects.crepitus.static_torque_nm`.
     pub path: String,
@@ -11,8 +13,9 @@ pub struct Axis {
     pub values: Values,
 }
 
-/// The values of an axis.
-#[derive(Clone, Debug, PartialEq)]
+/// The values of an axis. In a file an interval is `FROM:TO:SCALE`, whose numbers read back to the same bits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Written", into = "Written")]
 pub enum Values {
     /// Numbers of an interval, both ends included.
     Interval {
@@ -29,6 +32,45 @@ pub enum Values {
     List(Vec<String>),
 }
 
+/// Values as a file has them.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum Written {
+    Interval(String),
+    List(Vec<String>),
+}
+
+impl From<Values> for Written {
+    fn from(values: Values) -> Self {
+        match values {
+            Values::List(values) => Self::List(values),
+            Values::Interval {
+                from,
+                to,
+                scale,
+                count,
+            } => {
+                let count = count.map(|count| count.to_string()).unwrap_or_default();
+                Self::Interval(format!("{from:?}:{to:?}:{scale}{count}"))
+            }
+        }
+    }
+}
+
+impl TryFrom<Written> for Values {
+    type Error = AxisError;
+
+    fn try_from(written: Written) -> Result<Self, AxisError> {
+        match written {
+            Written::List(values) => Ok(Self::List(values)),
+            Written::Interval(text) => match text.split(':').collect::<Vec<_>>().as_slice() {
+                [from, to, scale] => interval(from, to, scale),
+                _ => refuse("expected FROM:TO:linN or FROM:TO:logN"),
+            },
+        }
+    }
+}
+
 /// Spacing of the values of an interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
@@ -36,6 +78,16 @@ pub enum Scale {
     Linear,
     /// Even in its logarithm.
     Logarithmic,
+}
+
+/// Formats the scale as a user writes it.
+impl fmt::Display for Scale {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Linear => "lin",
+            Self::Logarithmic => "log",
+        })
+    }
 }
 
 impl Scale {
@@ -239,6 +291,23 @@ mod tests {
         }
         assert_eq!(grid("solver.kind = exact, heun"), ["exact", "heun"]);
         assert_eq!(grid("a=7"), ["7"]);
+    }
+
+    #[test]
+    fn what_a_file_has_is_the_same_axis() {
+        for text in [
+            "a=0.1:0.30000000000000004:lin7",
+            "b=1e-300:1.7976931348623157e308:log",
+            "c=x,y",
+        ] {
+            let axis: Axis = text.parse().unwrap();
+            let json = serde_json::to_string(&axis).unwrap();
+            assert_eq!(serde_json::from_str::<Axis>(&json).unwrap(), axis, "{json}");
+        }
+        let list = Values::List(vec!["[1, 2]".to_owned(), "1:2:lin3".to_owned()]);
+        let json = serde_json::to_string(&list).unwrap();
+        assert_eq!(serde_json::from_str::<Values>(&json).unwrap(), list);
+        assert!(serde_json::from_str::<Values>("\"1:2\"").is_err());
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! Plan of a sweep: a scene, its overrides and a design.
 
 use crate::sweep::design::Design;
-use crate::sweep::pool::Threads;
+use crate::sweep::pool::{Threads, most_at_once};
+use crate::sweep::recipe::Data;
 use crate::sweep::row::Row;
-use crate::sweep::together::most_at_once;
+use crepitus_files::json_path;
 use crepitus_files::output::hex;
 use crepitus_scene::run::RunError;
 use crepitus_scene::shipped::Source;
@@ -13,16 +14,22 @@ use sha2::{Digest, Sha256};
 use std::fmt;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Plan of a sweep. Equal plans have equal rows, on any computer.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    source: Source,
-    overrides: Overrides,
-    design: Design,
+    pub(super) source: Source,
+    pub(super) overrides: Overrides,
+    pub(super) design: Design,
     identity: Identity,
+    /// Scene before a point's values, with every default written out.
+    pub(super) as_run: String,
+    /// Recording of the scene.
+    pub(super) data: Option<Data>,
+    /// Path of the recording, where it is not the scene's.
+    data_file: Option<String>,
     /// The most points of a thread at once.
     at_once: u64,
 }
@@ -130,7 +137,22 @@ impl Plan {
     /// # Errors
     /// [`SceneError`] of the scene, or of the first point if every point that was tried is invalid.
     pub fn new(source: Source, overrides: Overrides, design: Design) -> Result<Self, SceneError> {
-        let scene = source.scene(&overrides)?;
+        Self::with_data(source, overrides, design, None)
+    }
+
+    /// Creates the plan of a scene whose recording is at another path.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(super) fn with_data(
+        source: Source,
+        overrides: Overrides,
+        design: Design,
+        data_file: Option<&Path>,
+    ) -> Result<Self, SceneError> {
+        // A text of JSON is one of TOML.
+        let data_file = data_file.map(|file| serde_json::Value::from(json_path(file)).to_string());
+        let scene = source.scene(&moved(&overrides, data_file.as_deref()))?;
         let mut plan = Self {
             identity: Identity {
                 crepitus_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -144,6 +166,12 @@ impl Plan {
             source,
             overrides,
             design,
+            as_run: scene.as_run.clone(),
+            data: scene.data.as_ref().map(|data| Data {
+                file: json_path(&data.file),
+                sha256: data.sha256.clone(),
+            }),
+            data_file,
             at_once: 1,
         };
         plan.identity.sha256 = plan.digest(&scene);
@@ -174,8 +202,7 @@ impl Plan {
 
     /// Returns the files that the scene is read from.
     pub fn inputs(&self) -> Vec<PathBuf> {
-        let scene = self.source.scene(&self.overrides).ok();
-        let data = scene.and_then(|scene| scene.data).map(|data| data.file);
+        let data = self.data.as_ref().map(|data| PathBuf::from(&data.file));
         [Some(self.source.file.clone()), data]
             .into_iter()
             .flatten()
@@ -226,7 +253,7 @@ impl Plan {
         point: impl Iterator<Item = (&'p str, String)>,
     ) -> Result<Scene, SceneError> {
         let point = point.map(|(path, value)| (path.to_owned(), value));
-        let mut overrides = self.overrides.clone();
+        let mut overrides = moved(&self.overrides, self.data_file.as_deref());
         overrides.set.extend(point);
         self.source.scene(&overrides)
     }
@@ -259,6 +286,16 @@ impl Plan {
         add(&format!("{:?}", self.design));
         hex(&sha.finalize())
     }
+}
+
+/// Returns overrides with the recording at another path, as TOML.
+fn moved(overrides: &Overrides, data_file: Option<&str>) -> Overrides {
+    let mut overrides = overrides.clone();
+    if let Some(file) = data_file {
+        overrides.set.retain(|(path, _)| path != "motion.file");
+        (overrides.set).push(("motion.file".to_owned(), file.to_owned()));
+    }
+    overrides
 }
 
 /// Adds the outcome of a run to its row, or the reason of its failure.

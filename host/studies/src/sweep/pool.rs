@@ -2,7 +2,8 @@
 
 use crate::parallel::pool;
 use crate::sweep::row::Row;
-use crepitus_scene::Observer;
+use crepitus_scene::run::{Joined, step_count};
+use crepitus_scene::{Observer, Scene};
 use std::io;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,6 +32,21 @@ pub enum Ended {
     Failed(io::Error),
     /// Not one thread could be started.
     NoThread(io::Error),
+}
+
+/// The most points that are run together: many times the lanes of a processor.
+const MOST_TOGETHER: u64 = 32;
+
+/// The most steps of all joints that are run together: what is lost if they are interrupted, half a second.
+const MOST_STEPS: u64 = 1 << 26;
+
+/// Returns the most points of a sweep that a thread takes at once, one of which has this scene.
+pub(crate) fn most_at_once(scene: &Scene) -> u64 {
+    if Joined::is_alone(scene) {
+        (MOST_STEPS / step_count(scene).max(1)).clamp(1, MOST_TOGETHER)
+    } else {
+        1
+    }
 }
 
 /// Threads of a sweep.

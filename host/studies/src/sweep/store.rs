@@ -2,10 +2,11 @@
 
 use crate::sweep::parts::{Parts, missing};
 use crate::sweep::plan::{Identity, Shard};
+use crate::sweep::recipe::Recipe;
 use crate::sweep::row::Row;
 use crate::sweep::running::Running;
 use crate::sweep::store_error::{StoreError, at};
-use crate::sweep::table::{self, Format, TableError, Written};
+use crate::sweep::table::{self, Content, Format, TableError, Written};
 use crate::sweep::traced::Traces;
 use crepitus_files::input;
 use crepitus_files::output::{Claim, Hashed, OwnedFolder, State, check_folder, lock_folder};
@@ -16,6 +17,7 @@ use std::io::{self, Write};
 use std::ops::Range;
 use std::path::Path;
 use std::time::{Duration, Instant};
+use tempfile::NamedTempFile;
 
 /// Interval of writing rows: as much is lost of a sweep that is killed.
 const FLUSH_AFTER: Duration = Duration::from_secs(2);
@@ -24,6 +26,7 @@ const FLUSH_AFTER: Duration = Duration::from_secs(2);
 const FLUSH_ROWS: usize = 8192;
 
 const ABOUT: &str = "sweep.json";
+pub(super) const POINTS: &str = "points.csv";
 const PARTS: &str = "parts";
 const TRACES: &str = "traces";
 
@@ -55,17 +58,20 @@ pub struct Opening {
 
 /// Content of `sweep.json`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct About {
+pub(super) struct About {
     #[serde(flatten)]
-    identity: Identity,
+    pub(super) identity: Identity,
+    #[serde(flatten)]
+    pub(super) recipe: Recipe,
     /// The table, once it is complete.
-    table: Option<Finished>,
+    pub(super) table: Option<Finished>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Finished {
-    file: String,
+pub(super) struct Finished {
+    pub(super) file: String,
     failed: u64,
+    pub(super) sha256: String,
 }
 
 impl Store {
@@ -76,11 +82,14 @@ impl Store {
     pub fn create(
         folder: &Path,
         identity: &Identity,
+        recipe: &Recipe,
         opening: &Opening,
     ) -> Result<Self, StoreError> {
+        let points = recipe.design.points();
         let names = [ABOUT, opening.format.file()];
+        let names = names.into_iter().chain(points.map(|_| POINTS));
         let state = |folder: &OwnedFolder| -> Result<State, StoreError> {
-            folder.check(names)?;
+            folder.check(names.clone())?;
             Ok(folder.state(ABOUT)?)
         };
         // Before anything is made.
@@ -117,9 +126,13 @@ impl Store {
         }
         let about = About {
             identity: identity.clone(),
+            recipe: recipe.clone(),
             table: None,
         };
         let mut store = Self::new(owned, about, opening.shard);
+        if let Some(points) = points {
+            store.write(POINTS, |file| points.write(file))?;
+        }
         store.write_about()?;
         store.run(opening.shard.points(identity.runs))?;
         Ok(store)
@@ -226,7 +239,7 @@ impl Store {
         if folder.subfolder_state(TRACES)? == State::Own {
             folder.subfolder(TRACES)?.remove_own()?;
         }
-        for name in [ABOUT, Format::Csv.file(), Format::Parquet.file()] {
+        for name in [ABOUT, POINTS, Format::Csv.file(), Format::Parquet.file()] {
             folder.remove(name)?;
         }
         Ok(())
@@ -235,6 +248,22 @@ impl Store {
     /// Returns the identity of the sweep.
     pub const fn identity(&self) -> &Identity {
         &self.about.identity
+    }
+
+    /// Returns the commit of the program that began the sweep, if it is known.
+    pub fn commit(&self) -> Option<&str> {
+        self.about.recipe.crepitus_commit.as_deref()
+    }
+
+    /// Returns the rows that there are: those of the table, or of the parts.
+    ///
+    /// # Errors
+    /// [`TableError`].
+    pub fn content(&self) -> Result<Content, TableError> {
+        match &self.about.table {
+            Some(table) => table::read(&self.folder.path().join(&table.file)),
+            None => table::of_parts(&self.parts, self.identity()),
+        }
     }
 
     /// Opens the folder of traces, for those of these points.
@@ -254,6 +283,7 @@ impl Store {
             file,
             failed: table.failed,
             doubled: 0,
+            sha256: table.sha256.clone(),
         })
     }
 
@@ -325,10 +355,12 @@ impl Store {
         let table = table::write(&self.parts, self.identity(), format, progress)?;
         let _lock = lock_folder(self.folder.path());
         let file = Hashed::of(table.file.into_temp_path())?;
+        let sha256 = file.sha256().to_owned();
         self.folder.put(file, name)?;
         self.about.table = Some(Finished {
             file: name.to_owned(),
             failed: table.failed,
+            sha256: sha256.clone(),
         });
         self.write_about().map_err(io::Error::other)?;
         self.remove_parts().map_err(io::Error::other)?;
@@ -337,6 +369,7 @@ impl Store {
             bytes: table.bytes,
             failed: table.failed,
             doubled: table.doubled,
+            sha256,
         })
     }
 
@@ -351,22 +384,33 @@ impl Store {
     }
 
     fn write_about(&mut self) -> Result<(), StoreError> {
-        let path = self.folder.path().join(ABOUT);
+        let about = self.about.clone();
+        self.write(ABOUT, |file| {
+            serde_json::to_writer_pretty(&mut *file, &about)?;
+            file.write_all(b"\n")
+        })?;
+        Ok(self.folder.compact()?)
+    }
+
+    /// Writes a file of the folder, whole or not at all.
+    fn write(
+        &mut self,
+        name: &str,
+        content: impl FnOnce(&mut NamedTempFile) -> io::Result<()>,
+    ) -> Result<(), StoreError> {
         let write = || -> io::Result<Hashed> {
             let mut file = self.folder.temporary()?;
-            serde_json::to_writer_pretty(&mut file, &self.about)?;
-            file.write_all(b"\n")?;
+            content(&mut file)?;
             file.as_file().sync_all()?;
             Hashed::of(file.into_temp_path())
         };
-        let file = write().map_err(at(&path))?;
-        self.folder.put(file, ABOUT)?;
-        Ok(self.folder.compact()?)
+        let file = write().map_err(at(&self.folder.path().join(name)))?;
+        Ok(self.folder.put(file, name)?)
     }
 }
 
 /// Reads `sweep.json`.
-fn read_about(folder: &Path) -> Result<About, StoreError> {
+pub(super) fn read_about(folder: &Path) -> Result<About, StoreError> {
     let file = folder.join(ABOUT);
     let text = match fs::symlink_metadata(&file) {
         Err(e) if e.kind() == io::ErrorKind::NotFound => {

@@ -1,6 +1,7 @@
 //! Errors of the folder of a sweep.
 
 use crepitus_files::output::OutputError;
+use crepitus_scene::SceneError;
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -19,6 +20,17 @@ pub enum StoreError {
         /// Reason.
         why: String,
     },
+    /// A file that repeats the sweep is not as it was.
+    #[error("{}: {why}", folder.display())]
+    Changed {
+        /// The folder.
+        folder: PathBuf,
+        /// Reason.
+        why: String,
+    },
+    /// The scene of the sweep cannot be read.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
     /// The folder has another sweep.
     #[error("{} has another sweep: {difference}", folder.display())]
     Another {

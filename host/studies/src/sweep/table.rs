@@ -2,6 +2,9 @@
 
 #[cfg(feature = "parquet")]
 mod parquet;
+mod read;
+
+pub use read::{Content, of_parts, read};
 
 use crate::sweep::kind::Kind;
 use crate::sweep::parts::{Column, PartError, Parts, missing};
@@ -43,6 +46,12 @@ impl Format {
             Self::Parquet => "parquet",
             Self::Csv => "csv",
         }
+    }
+
+    /// Returns the format of a file of this name, if this program writes it.
+    pub(crate) fn of_file(name: &str) -> Option<Self> {
+        let is_of = |format: &Self| format.file() == name && format.name().parse() == Ok(*format);
+        [Self::Parquet, Self::Csv].into_iter().find(is_of)
     }
 
     /// Returns the name of the file.
@@ -119,6 +128,8 @@ pub struct Written {
     pub failed: u64,
     /// Number of points that two parts have, with the same rows.
     pub doubled: u64,
+    /// SHA-256 of the file, in hex digits.
+    pub sha256: String,
 }
 
 /// A complete table that is not in its place yet.

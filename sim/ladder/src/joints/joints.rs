@@ -1,6 +1,7 @@
 //! Joints, their state and its copies.
 
-use crate::joints::many::{Lanes, Many, StepPart, Work};
+use crate::joints::each::{StepPart, Work};
+use crate::joints::many::{Lanes, Many};
 use crate::joints::motion::{Columns, Counts, Motion, State, StepEvent};
 use crepitus_model::solver::Solver;
 use crepitus_model::{Convention, Settings, SettingsError, Validated};

@@ -10,8 +10,7 @@
 //!
 //! A lane is as far in its motion as it is, not as the others are; one that has ended takes the next joint.
 
-use crate::joints::many::{Each, Lanes, UNWATCHED_STEPS, Work};
-use crate::joints::rung::OfRung;
+use crate::joints::each::{Each, UNWATCHED_STEPS, Work};
 use crate::joints::slips::{LANES, Slips};
 use crepitus_model::joint::Coast;
 use crepitus_model::{Real, StickSlip};
@@ -23,6 +22,12 @@ const CHUNK: usize = 32;
 /// Joints below which each goes by itself.
 pub(crate) const LEAST_LANES: usize = 3;
 
+/// Joints that are stepped side by side.
+pub(crate) trait InLanes<F> {
+    /// Steps all of them by one step; turns and speeds are `stride` apart.
+    fn step_in_lanes(&mut self, turns_rad: &[F], speeds_rad_s: &[F], stride: usize);
+}
+
 /// As [`Coast::motions`].
 pub(crate) fn motions<F: Real>(coast: &Coast<F>, theta_rad: &mut [F], theta_dot_rad_s: &mut [F]) {
     #[cfg(target_arch = "x86_64")]
@@ -33,7 +38,7 @@ pub(crate) fn motions<F: Real>(coast: &Coast<F>, theta_rad: &mut [F], theta_dot_
 }
 
 /// Steps joints through their motions, several side by side; ends early if `goes_on` says no.
-pub(crate) fn steps<F: Lanes, J: StickSlip<F>>(
+pub(crate) fn steps<F: Real, J: StickSlip<F>>(
     joints: &mut [Each<J, F>],
     work: Work<'_, F>,
     goes_on: &mut dyn FnMut() -> bool,
@@ -46,8 +51,8 @@ pub(crate) fn steps<F: Lanes, J: StickSlip<F>>(
 }
 
 /// Steps all joints of a rung by one step.
-pub(crate) fn step<F: Lanes, J: StickSlip<F>>(
-    joints: &mut OfRung<J, F>,
+pub(crate) fn step<F: Real>(
+    joints: &mut impl InLanes<F>,
     turns_rad: &[F],
     speeds_rad_s: &[F],
     stride: usize,
@@ -67,7 +72,7 @@ mod wide {
         reason = "a call of code for AVX2, behind the test that the processor has it"
     )]
 
-    use super::{Block, Coast, Each, Lanes, OfRung, Real, StickSlip, Work};
+    use super::{Block, Coast, Each, InLanes, Real, StickSlip, Work};
 
     pub(super) fn is_there() -> bool {
         std::arch::is_x86_feature_detected!("avx2")
@@ -87,13 +92,13 @@ mod wide {
         unsafe { wide(coast, theta_rad, theta_dot_rad_s) }
     }
 
-    pub(super) fn steps<F: Lanes, J: StickSlip<F>>(
+    pub(super) fn steps<F: Real, J: StickSlip<F>>(
         joints: &mut [Each<J, F>],
         work: Work<'_, F>,
         goes_on: &mut dyn FnMut() -> bool,
     ) {
         #[target_feature(enable = "avx2")]
-        fn wide<F: Lanes, J: StickSlip<F>>(
+        fn wide<F: Real, J: StickSlip<F>>(
             joints: &mut [Each<J, F>],
             work: Work<'_, F>,
             goes_on: &mut dyn FnMut() -> bool,
@@ -105,15 +110,15 @@ mod wide {
         unsafe { wide(joints, work, goes_on) }
     }
 
-    pub(super) fn step<F: Lanes, J: StickSlip<F>>(
-        joints: &mut OfRung<J, F>,
+    pub(super) fn step<F: Real>(
+        joints: &mut impl InLanes<F>,
         turns_rad: &[F],
         speeds_rad_s: &[F],
         stride: usize,
     ) {
         #[target_feature(enable = "avx2")]
-        fn wide<F: Lanes, J: StickSlip<F>>(
-            joints: &mut OfRung<J, F>,
+        fn wide<F: Real>(
+            joints: &mut impl InLanes<F>,
             turns_rad: &[F],
             speeds_rad_s: &[F],
             stride: usize,
@@ -150,7 +155,7 @@ struct Block<'a, 'w, J, F> {
     unwatched: usize,
 }
 
-impl<'a, 'w, F: Lanes, J: StickSlip<F>> Block<'a, 'w, J, F> {
+impl<'a, 'w, F: Real, J: StickSlip<F>> Block<'a, 'w, J, F> {
     fn new(joints: &'a mut [Each<J, F>], work: Work<'w, F>) -> Self {
         let coefficients = joints.first().map(|each| *each.joint.coefficients());
         Self {

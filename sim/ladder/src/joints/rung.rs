@@ -1,11 +1,14 @@
 //! Joints of one rung, step by step together.
 
-use crate::joints::lanes;
-use crate::joints::many::{AfterStep, Each, Lanes, Many, StepPart, Work, in_threads};
+use crate::joints::each::{AfterStep, Each, StepPart, Work};
+use crate::joints::lanes::{self, InLanes};
+use crate::joints::loops::in_threads;
+use crate::joints::many::{Lanes, Many};
 use crate::joints::motion::{Counts, State, StepEvent};
 use crate::joints::slips::{LANES, Slips};
-use crepitus_model::StickSlip;
 use crepitus_model::joint::SlipLane;
+use crepitus_model::solver::{JointVisitor, Solver, with_joint};
+use crepitus_model::{Settings, SettingsError, StickSlip, Validated};
 use std::any::Any;
 use std::array::from_fn;
 
@@ -102,40 +105,6 @@ impl<F: Lanes, J: StickSlip<F>> OfRung<J, F> {
         self.catch_up(n);
         self.joints[n].step(0, turn_rad, speed_rad_s);
         self.look_at(n);
-    }
-
-    /// A step of all joints, whose slips are side by side.
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "the target features of its caller")]
-    pub(crate) fn step_in_lanes(&mut self, turns_rad: &[F], speeds_rad_s: &[F], stride: usize) {
-        let count = self.joints.len();
-        for block in 0..self.slips.len() {
-            let first = block * LANES;
-            let ends = if stride == 0 {
-                [speeds_rad_s[0]; LANES]
-            } else {
-                from_fn(|i| speeds_rad_s[(first + i).min(count - 1)])
-            };
-            let slips = &mut self.slips[block];
-            let (x, v, is_sure) = slips.stepped(&ends, self.step);
-            if is_sure == [true; LANES] {
-                (slips.x, slips.v, slips.omega) = (x, v, ends);
-                for (omega, end) in self.omega_rad_s[first..].iter_mut().zip(ends) {
-                    *omega = end;
-                }
-                continue;
-            }
-            for i in 0..LANES.min(count - first) {
-                let n = first + i;
-                if is_sure[i] {
-                    let slips = &mut self.slips[block];
-                    (slips.x[i], slips.v[i], slips.omega[i]) = (x[i], v[i], ends[i]);
-                    self.omega_rad_s[n] = ends[i];
-                } else {
-                    self.step_alone(n, turns_rad[n * stride], ends[i]);
-                }
-            }
-        }
     }
 }
 
@@ -249,5 +218,85 @@ impl<F: Lanes, J: StickSlip<F> + Clone> Many<F> for OfRung<J, F> {
 
     fn counts(&self, n: usize) -> Counts {
         self.joints[n].counts
+    }
+}
+
+impl<F: Lanes, J: StickSlip<F>> InLanes<F> for OfRung<J, F> {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the target features of its caller")]
+    fn step_in_lanes(&mut self, turns_rad: &[F], speeds_rad_s: &[F], stride: usize) {
+        let count = self.joints.len();
+        for block in 0..self.slips.len() {
+            let first = block * LANES;
+            let ends = if stride == 0 {
+                [speeds_rad_s[0]; LANES]
+            } else {
+                from_fn(|i| speeds_rad_s[(first + i).min(count - 1)])
+            };
+            let slips = &mut self.slips[block];
+            let (x, v, is_sure) = slips.stepped(&ends, self.step);
+            if is_sure == [true; LANES] {
+                (slips.x, slips.v, slips.omega) = (x, v, ends);
+                for (omega, end) in self.omega_rad_s[first..].iter_mut().zip(ends) {
+                    *omega = end;
+                }
+                continue;
+            }
+            for i in 0..LANES.min(count - first) {
+                let n = first + i;
+                if is_sure[i] {
+                    let slips = &mut self.slips[block];
+                    (slips.x[i], slips.v[i], slips.omega[i]) = (x[i], v[i], ends[i]);
+                    self.omega_rad_s[n] = ends[i];
+                } else {
+                    self.step_alone(n, turns_rad[n * stride], ends[i]);
+                }
+            }
+        }
+    }
+}
+
+impl Lanes for f32 {
+    fn push(
+        many: Option<Box<dyn Many<Self>>>,
+        settings: &Validated<Settings>,
+        solver: Solver,
+        step_s: f64,
+        omega_rad_s: Self,
+    ) -> Result<Box<dyn Many<Self>>, SettingsError> {
+        let push = Push { many, omega_rad_s };
+        with_joint(settings, solver, step_s, omega_rad_s, push)
+    }
+}
+
+impl Lanes for f64 {
+    fn push(
+        many: Option<Box<dyn Many<Self>>>,
+        settings: &Validated<Settings>,
+        solver: Solver,
+        step_s: f64,
+        omega_rad_s: Self,
+    ) -> Result<Box<dyn Many<Self>>, SettingsError> {
+        let push = Push { many, omega_rad_s };
+        with_joint(settings, solver, step_s, omega_rad_s, push)
+    }
+}
+
+/// Adds a joint to those of its rung.
+struct Push<F> {
+    many: Option<Box<dyn Many<F>>>,
+    omega_rad_s: F,
+}
+
+impl<F: Lanes> JointVisitor<F> for Push<F> {
+    type Output = Box<dyn Many<F>>;
+
+    fn visit<J: StickSlip<F> + Clone>(self, joint: J) -> Box<dyn Many<F>> {
+        let mut many = self.many.unwrap_or_else(|| Box::new(OfRung::<J, F>::new()));
+        // One convention and one solver are one type.
+        if let Some(joints) = many.as_any().downcast_mut::<OfRung<J, F>>() {
+            joints.push(joint, self.omega_rad_s);
+        }
+        many
     }
 }

@@ -64,6 +64,7 @@ const NAME: &str = "backlash";
 /// A gap that is open to this share is closed.
 const NEARLY: f64 = 1.0 - 1e-7;
 
+#[derive(Clone)]
 struct Backlash {
     left: Box<dyn Chain>,
     half_rad: f64,

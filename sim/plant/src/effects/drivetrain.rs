@@ -67,6 +67,7 @@ enum Mode {
 }
 
 /// A chain that ends in a gear with the rotor behind it.
+#[derive(Clone)]
 pub(crate) struct Drivetrain<L> {
     left: L,
     gear: Gear,
@@ -160,7 +161,7 @@ impl<L: Chain> Drivetrain<L> {
     }
 }
 
-impl<L: Chain> Chain for Drivetrain<L> {
+impl<L: Chain + Clone + 'static> Chain for Drivetrain<L> {
     fn left(&self) -> Option<&dyn Chain> {
         Some(&self.left)
     }

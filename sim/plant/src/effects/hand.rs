@@ -91,6 +91,7 @@ pub const EFFECT: Effect = Effect {
 const NAME: &str = "hand";
 
 /// The arm's impedance.
+#[derive(Clone)]
 struct Arm {
     inertia_kg_m2: f64,
     damping: f64,
@@ -104,6 +105,7 @@ struct Arm {
 }
 
 /// Compensation of the leg's weight by a hand, if there is a leg.
+#[derive(Clone)]
 struct Lift {
     weight: Option<Weight>,
     given_j: f64,
@@ -118,6 +120,7 @@ impl Lift {
     }
 }
 
+#[derive(Clone)]
 struct Hand {
     arm: Arm,
     lift: Lift,

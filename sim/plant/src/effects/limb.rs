@@ -184,6 +184,7 @@ impl<A: AngleTorque, B: AngleTorque> AngleTorque for (A, B) {
 }
 
 /// Leg and foot, with what pulls at them.
+#[derive(Clone)]
 struct Limb<T> {
     inertia_kg_m2: f64,
     damping: f64,

@@ -152,6 +152,7 @@ impl MotorNumbers {
 }
 
 /// Bridge and amplifiers of a motor that is stepped by ticks.
+#[derive(Clone)]
 struct RealPath {
     path: CurrentPath,
     /// The loop gets the current of half A, whatever the duty.
@@ -165,6 +166,7 @@ struct RealPath {
     off_a: [f64; 2],
 }
 
+#[derive(Clone)]
 struct Motor<F> {
     current_loop: CurrentLoop<F>,
     winding: Winding,

@@ -172,6 +172,7 @@ struct EnergyAccount {
     knocks: u64,
 }
 
+#[derive(Clone)]
 struct ReactionMass {
     mass_kg: f64,
     lever_m: f64,

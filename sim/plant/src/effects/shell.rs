@@ -92,6 +92,7 @@ fn join(
 }
 
 /// The shell's mass.
+#[derive(Clone)]
 struct Shell {
     inertia_kg_m2: f64,
     /// N·m where it is horizontal, and the angle to add to φ so that it is a cosine.

@@ -99,7 +99,8 @@ impl TimeUnit {
         ("clock", Self::Clock),
     ];
 
-    fn of_word(word: &str) -> Option<Self> {
+    /// The unit that a word over a column means.
+    pub fn of_word(word: &str) -> Option<Self> {
         match word {
             "s" | "sec" | "secs" | "second" | "seconds" => Some(Self::Seconds),
             "ms" | "msec" | "msecs" | "millisecond" | "milliseconds" => Some(Self::Milliseconds),

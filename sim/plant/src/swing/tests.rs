@@ -15,6 +15,13 @@ const N: WeightedBrace = WeightedBrace {
     moment_nm: 6.0,
     weight_kg_m2: 0.2,
     viscous_nms: 0.05,
+    imperfections: Imperfections {
+        presliding_rad_per_nm: 0.0,
+        teeth_rad_per_nm: 0.0,
+        stribeck: 0.0,
+        by_angle: [0.0; BY_ANGLE],
+        range_rad: 1.0,
+    },
 };
 
 fn begin(angle_rad: f64, omega_rad_s: f64) -> Begin {
@@ -116,4 +123,88 @@ fn the_angle_is_smooth_in_every_number() {
         let whole = norm(&mut a.iter().copied());
         assert!(differ < 0.1 * whole + 1e-9, "{i}: {differ} of {whole}");
     }
+}
+
+/// With friction F·(1 + a·x) + F·c·P₂(x), x the angle over the range, a half swing from −b to c takes its integral.
+#[test]
+fn friction_by_angle_takes_its_integral() {
+    let imperfections = Imperfections {
+        by_angle: [0.2, 0.1, 0.0, 0.0],
+        range_rad: 1.1,
+        ..N.imperfections
+    };
+    let n = WeightedBrace {
+        viscous_nms: 0.0,
+        stiffness_nm: 2000.0,
+        gap_rad: 1e-4,
+        imperfections,
+        ..N
+    };
+    let angles = swing(&n, 0.0, &begin(0.0, 5.0), &vec![0.0; 8000]);
+    let turns: Vec<f64> = angles
+        .windows(3)
+        .filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0)
+        .map(|w| w[1])
+        .collect();
+    // ∫ 1 + 0.2x + 0.1(1.5x² − 0.5) dφ, x = φ/1.1.
+    let integral = |phi: f64| {
+        let x = phi / 1.1;
+        1.1 * (x + 0.1 * x * x + 0.05 * (x.powi(3) - x))
+    };
+    assert!(turns.len() >= 2, "{turns:?}");
+    for pair in turns.windows(2) {
+        let lost = 6.0 * (pair[1].cos() - pair[0].cos());
+        let expected = 0.5 * (integral(pair[0]) - integral(pair[1])).abs();
+        assert!((lost / expected - 1.0).abs() < 0.02, "{turns:?}");
+    }
+}
+
+/// Springs that hardly give way change the swing as little; soft ones much.
+#[test]
+fn stiff_springs_are_nearly_rigid() {
+    let swung = |presliding_rad_per_nm: f64, teeth_rad_per_nm: f64| {
+        let imperfections = Imperfections {
+            presliding_rad_per_nm,
+            teeth_rad_per_nm,
+            ..N.imperfections
+        };
+        swing(
+            &WeightedBrace { imperfections, ..N },
+            0.0,
+            &begin(0.1, 5.0),
+            &vec![0.0; 6000],
+        )
+    };
+    let rigid = swung(0.0, 0.0);
+    let apart = |other: &[f64]| {
+        let pairs = rigid.iter().zip(other);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    for (stiff, soft) in [((5e-6, 0.0), (5e-4, 0.0)), ((0.0, 2e-5), (0.0, 1e-3))] {
+        let [stiff, soft] =
+            [stiff, soft].map(|(presliding, teeth)| apart(&swung(presliding, teeth)));
+        assert!(stiff < 3e-3 && soft > 3.0 * stiff, "{stiff} {soft}");
+    }
+}
+
+/// Friction that is greater at rest stops the swing earlier.
+#[test]
+fn stribeck_friction_stops_it_earlier() {
+    let last = |stribeck: f64| {
+        let imperfections = Imperfections {
+            stribeck,
+            ..N.imperfections
+        };
+        let angles = swing(
+            &WeightedBrace { imperfections, ..N },
+            0.0,
+            &begin(0.1, 5.0),
+            &vec![0.0; 12_000],
+        );
+        let turns = angles
+            .windows(3)
+            .filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0);
+        turns.map(|w| w[1].abs()).sum::<f64>()
+    };
+    assert!(last(0.5) < last(0.0) - 0.01, "{} {}", last(0.5), last(0.0));
 }

@@ -177,6 +177,22 @@ impl<'a> Section<'a> {
             .ok_or_else(|| self.missing(key, &format!("a number {range}")))
     }
 
+    /// Numbers that may be left out.
+    pub(crate) fn optional_numbers(&self, key: &str) -> Result<Option<Vec<f64>>, SceneError> {
+        let Some(node) = self.ask(key) else {
+            return Ok(None);
+        };
+        let expected = "numbers in brackets";
+        let Value::List(items) = &node.value else {
+            return Err(self.wrong_type(key, node, expected));
+        };
+        let numbers = items.iter().map(|item| match item.value {
+            Value::Number(x) => Ok(x),
+            _ => Err(self.wrong_type(key, item, expected)),
+        });
+        numbers.collect::<Result<_, _>>().map(Some)
+    }
+
     /// A boolean, false if left out, which is noted.
     pub(crate) fn flag(&self, key: &str) -> Result<bool, SceneError> {
         match self.ask(key) {

@@ -1,6 +1,6 @@
 //! A preset as JSON, for programs.
 
-use super::{Disorder, Evidence, Level, Preset, PresetValue, Setting};
+use super::{Disorder, Evidence, Judgement, Level, Preset, PresetValue, Setting};
 use crepitus_files::json_path;
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -41,6 +41,7 @@ impl Preset {
             "feel": self.feel,
             "evidence": self.evidence.map(Evidence::name),
             "source": self.source,
+            "judged": self.judgements().iter().map(judged).collect::<Vec<_>>(),
             "file": file.map(json_path),
             "effects": effects,
             "values": values,
@@ -56,6 +57,17 @@ impl PresetValue {
             Setting::Option(_) => None,
         }
     }
+}
+
+fn judged(judgement: &Judgement) -> Value {
+    json!({
+        "study": judgement.study,
+        "date": judgement.date,
+        "clinicians": judgement.clinicians,
+        "ratings": judgement.ratings,
+        "statistic": judgement.statistic,
+        "sha256": judgement.sha256,
+    })
 }
 
 fn value_json(setting: Setting) -> Value {

@@ -10,6 +10,7 @@ use crepitus_model::{
 
 /// Keeps the tally of a stepping run: where in the step it is, and what the
 /// joint has seen of the shaft.
+#[derive(Clone)]
 pub(super) struct StepAccounting {
     pub(super) tally: Tally,
     /// Length of the step, or of the part of one that is being accounted for, s.

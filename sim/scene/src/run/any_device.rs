@@ -46,7 +46,10 @@ impl Span {
 }
 
 /// The device's renderer, on the shaft as measured.
-pub(super) trait Device {
+pub(super) trait Device: Send {
+    /// Copy with its state.
+    fn boxed(&self) -> Box<dyn Device>;
+
     /// Output from now to the end of the next tick.
     fn shown(&self) -> Shown<f64>;
 
@@ -103,7 +106,17 @@ pub(super) trait Device {
     fn finish(self: Box<Self>, time_s: f64) -> Option<(Tally, u64)>;
 }
 
+impl Clone for Box<dyn Device> {
+    fn clone(&self) -> Self {
+        self.as_ref().boxed()
+    }
+}
+
 impl Device for Box<dyn Device> {
+    fn boxed(&self) -> Box<dyn Device> {
+        self.clone()
+    }
+
     fn shown(&self) -> Shown<f64> {
         self.as_ref().shown()
     }

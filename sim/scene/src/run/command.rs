@@ -8,6 +8,7 @@ use crepitus_model::render::Shown;
 use crepitus_model::render::effects::{EffectSpec, IS_SYMPTOM, SPECS};
 
 /// An effect of the device, its present torque, and its work.
+#[derive(Clone)]
 pub(super) struct Stage {
     pub(super) spec: &'static EffectSpec,
     /// Place of the effect in the model's table.

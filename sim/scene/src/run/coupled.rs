@@ -23,6 +23,7 @@ use crepitus_plant::chain::{Body, Impacts};
 use crepitus_plant::energy_balance::EnergyBalance;
 use crepitus_plant::mechanics::{Driven, Mechanics};
 use crepitus_plant::rigid_shaft::RigidShaft;
+use std::borrow::Borrow;
 use std::marker::PhantomData;
 
 /// The totals of a plant.
@@ -86,21 +87,8 @@ impl<F: Precise> Coupling<'_, F> {
     /// Runs this device on this plant.
     fn run<M: Driven, D: Device>(self, plant: M, device: D) -> Result<Totals, Ended> {
         let scene = self.scene;
-        let tick_s = scene.step_s();
-        let part_s = tick_s / f64::from(scene.substeps);
-        let run = Run {
-            has_tank: scene.gives_energy(),
-            first_felt_nm: first_felt_nm(scene)?,
-            device,
-            plant,
-            stages: Stage::listed(scene),
-            tick_s,
-            coil_v: 0.0,
-            splits: !scene.is_device && scene.encoder.is_none(),
-            cuts: Vec::new(),
-        };
-        let walk = Walk::new(&scene.motion, part_s).in_parts::<F>();
-        run.go(scene, walk, self.watch)
+        let run = Run::new(scene, plant, device, first_felt_nm(scene)?);
+        run.go(scene, walk::<_, F>(scene, &scene.motion), self.watch)
     }
 }
 
@@ -126,9 +114,17 @@ impl<F: Precise> PlantVisitor for Coupling<'_, F> {
     }
 }
 
-struct Run<M, D> {
+/// Walk through a motion in steps of a scene's plant, for a device that computes in `F`.
+pub(super) fn walk<W: Borrow<Motion>, F: Precise>(scene: &Scene, motion: W) -> Walk<W> {
+    let part_s = scene.step_s() / f64::from(scene.substeps);
+    Walk::new(motion, part_s).in_parts::<F>()
+}
+
+/// A plant with its device.
+#[derive(Clone)]
+pub(super) struct Run<M, D> {
     device: D,
-    plant: M,
+    pub(super) plant: M,
     stages: Vec<Stage>,
     tick_s: f64,
     /// Voltage for the coil, which its PWM loads with the next tick.
@@ -148,9 +144,43 @@ struct Run<M, D> {
 const FASTEST: f64 = 1e15;
 
 impl<M: Driven, D: Device> Run<M, D> {
+    /// Couples the device of a scene to its plant; the hand feels `first_felt_nm` in the first tick, N·m.
+    pub(super) fn new(scene: &Scene, plant: M, device: D, first_felt_nm: f64) -> Self {
+        Self {
+            has_tank: scene.gives_energy(),
+            first_felt_nm,
+            device,
+            plant,
+            stages: Stage::listed(scene),
+            tick_s: scene.step_s(),
+            coil_v: 0.0,
+            splits: !scene.is_device && scene.encoder.is_none(),
+            cuts: Vec::new(),
+        }
+    }
+
+    /// The run before its first tick.
+    pub(super) fn begun(&mut self) -> Reached {
+        Reached {
+            n: 0,
+            time_s: 0.0,
+            tick_s: self.tick_s,
+            shaft: self.plant.shaft(),
+            command: self.device.command(&mut self.stages),
+            felt_nm: self.first_felt_nm,
+            struck_nms: 0.0,
+            felt: TorqueTally::default(),
+            most_struck_nms: 0.0,
+            held_j: 0.0,
+            limited_j: 0.0,
+            beyond: Beyond::new(),
+            fastest_rad_s: 0.0,
+        }
+    }
+
     /// Returns whether a state is NaN, infinite, or soon will be, and which: a shaft that is not finite makes
     /// an object so, and one whose square overflows makes the plant's other states so.
-    fn diverged(&self, scene: &Scene, by_s: f64) -> Option<Diverged> {
+    pub(super) fn diverged(&self, scene: &Scene, by_s: f64) -> Option<Diverged> {
         let shaft = self.plant.shaft();
         let fits = |x: f64| x.abs() < FASTEST;
         let shaft_fits = fits(shaft.angle_rad) && fits(shaft.omega_rad_s);
@@ -182,21 +212,7 @@ impl<M: Driven, D: Device> Run<M, D> {
         let (steps, every) = steps(scene);
         let every = watch.wants_rows().then_some(every);
         let parts = scene.substeps;
-        let mut at = Reached {
-            n: 0,
-            time_s: 0.0,
-            tick_s: self.tick_s,
-            shaft: self.plant.shaft(),
-            command: self.device.command(&mut self.stages),
-            felt_nm: self.first_felt_nm,
-            struck_nms: 0.0,
-            felt: TorqueTally::default(),
-            most_struck_nms: 0.0,
-            held_j: 0.0,
-            limited_j: 0.0,
-            beyond: Beyond::new(),
-            fastest_rad_s: 0.0,
-        };
+        let mut at = self.begun();
         let mut row = Vec::new();
         let mut events = Vec::new();
         let mut stop = 0;
@@ -267,10 +283,10 @@ impl<M: Driven, D: Device> Run<M, D> {
         clippy::inline_always,
         reason = "the loop's own, with nothing but the loop around it"
     )]
-    fn tick(
+    pub(super) fn tick(
         &mut self,
         at: &mut Reached,
-        walk: &mut Walk<&Motion>,
+        walk: &mut Walk<impl Borrow<Motion>>,
         parts: u32,
         events: &mut Vec<Happened>,
     ) {
@@ -315,20 +331,25 @@ impl<M: Driven, D: Device> Run<M, D> {
             return Err(RunError::Diverged(diverged));
         }
         if is_row {
-            let shaft = self.plant.shaft();
-            row.clear();
-            row.extend([at.time_s, shaft.angle_rad, shaft.omega_rad_s]);
-            self.write(scene, row);
-            if scene.is_held() {
-                row.push(at.felt_nm);
-                row.extend(self.plant.impacts().map(|_| at.struck_nms));
-            }
+            self.row(scene, at, scene.is_held(), row);
             watch.row(row)?;
         }
         if at.n.is_multiple_of(PROGRESS_STEPS) {
             watch.progress(at.time_s)?;
         }
         Ok(())
+    }
+
+    /// Row of the trace, with what the hand feels if somebody holds the leg.
+    pub(super) fn row(&self, scene: &Scene, at: &Reached, is_held: bool, row: &mut Vec<f64>) {
+        let shaft = self.plant.shaft();
+        row.clear();
+        row.extend([at.time_s, shaft.angle_rad, shaft.omega_rad_s]);
+        self.write(scene, row);
+        if is_held {
+            row.push(at.felt_nm);
+            row.extend(self.plant.impacts().map(|_| at.struck_nms));
+        }
     }
 
     /// One tick of the device, in which the shaft has gone from one state to the next: its next
@@ -375,7 +396,12 @@ impl<M: Driven, D: Device> Run<M, D> {
 
     /// The plant through one tick; the shaft at its end, before and after a jump there.
     #[inline]
-    fn advance(&mut self, walk: &mut Walk<&Motion>, parts: u32, from: Body) -> (Body, Body) {
+    fn advance(
+        &mut self,
+        walk: &mut Walk<impl Borrow<Motion>>,
+        parts: u32,
+        from: Body,
+    ) -> (Body, Body) {
         let mut shaft = (from, from);
         if self.splits {
             for _ in 0..parts {
@@ -405,7 +431,7 @@ fn tell(events: &mut Vec<Happened>, watch: &mut dyn Watch) -> Result<(), Stopped
 
 /// Torque that the hand feels in the first tick, N·m: a plant that is thrown away goes
 /// through it.
-fn first_felt_nm(scene: &Scene) -> Result<f64, crepitus_model::SettingsError> {
+pub(super) fn first_felt_nm(scene: &Scene) -> Result<f64, crepitus_model::SettingsError> {
     let mut plant = scene.assemble()?;
     let tick_s = scene.step_s();
     let mut walk = Walk::new(&scene.motion, tick_s);

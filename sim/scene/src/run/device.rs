@@ -60,7 +60,7 @@ pub(super) fn device<F: Precise>(
     with_sensor::<F, _>(scene, solver, step_s, shaft, sensor)
 }
 
-fn with_sensor<F: Precise, S: Sensor<F> + 'static>(
+fn with_sensor<F: Precise, S: Sensor<F>>(
     scene: &Scene,
     solver: Solver,
     step_s: f64,
@@ -160,7 +160,7 @@ struct Maker<'a, S> {
 }
 
 /// Boxes a device with the joint that the drive renders.
-impl<F: Real, S: Sensor<F> + 'static> LocatorVisitor<F> for Maker<'_, S> {
+impl<F: Real, S: Sensor<F>> LocatorVisitor<F> for Maker<'_, S> {
     type Output = Result<Box<dyn Device>, SettingsError>;
 
     fn visit<L: Locate<F, Shape = Linear>>(self) -> Self::Output {
@@ -171,7 +171,7 @@ impl<F: Real, S: Sensor<F> + 'static> LocatorVisitor<F> for Maker<'_, S> {
 }
 
 impl<S: 'static> Maker<'_, S> {
-    fn joined<F: Real, P: HasJoint<F> + 'static>(self, mut stages: P) -> Joined<F, P, S>
+    fn joined<F: Real, P: HasJoint<F>>(self, mut stages: P) -> Joined<F, P, S>
     where
         S: Sensor<F>,
     {
@@ -221,6 +221,7 @@ fn first<F: Real>(
 }
 
 /// A device with a joint.
+#[derive(Clone)]
 pub(super) struct Joined<F, P, S> {
     stages: P,
     sensor: S,
@@ -248,6 +249,10 @@ fn report<F: Real>(
 }
 
 impl<F: Real, P: HasJoint<F>, S: Sensor<F>> Device for Joined<F, P, S> {
+    fn boxed(&self) -> Box<dyn Device> {
+        Box::new(self.clone())
+    }
+
     fn shown(&self) -> Shown<f64> {
         self.shown.to_f64()
     }

@@ -6,6 +6,7 @@ use super::tally::TorqueTally;
 use crepitus_plant::chain::Body;
 
 /// A coupled run before its next tick.
+#[derive(Clone)]
 pub(super) struct Reached {
     /// Ticks so far.
     pub(super) n: u64,

@@ -24,6 +24,7 @@ impl Happened {
 }
 
 /// Report of a symptom from within a tick.
+#[derive(Clone)]
 pub(super) enum Notice<F> {
     /// An event of it.
     Change(Change<F>),
@@ -33,6 +34,7 @@ pub(super) enum Notice<F> {
 
 /// Reports of a tick: there are hardly ever any, so a tick only collects them. The joint acts
 /// first, so its events are before all notices.
+#[derive(Clone)]
 pub(super) struct Heard<F> {
     pub(super) events: Vec<Event<F>>,
     pub(super) notices: Vec<(&'static EffectSpec, Notice<F>)>,
@@ -74,6 +76,7 @@ impl<F: Real> Observe<F> for Heard<F> {
 }
 
 /// Puts the events of symptoms on record, and what the tank pays of them.
+#[derive(Clone)]
 pub(super) struct Recorder {
     pub(super) step_s: f64,
     play_events: bool,

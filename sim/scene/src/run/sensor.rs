@@ -11,7 +11,7 @@ use crepitus_plant::encoder::Encoder;
 ///
 /// Implementations are chosen once per run; an absent sensor is the type
 /// [`Ideal`], which has no state, no column and no test in the step.
-pub(super) trait Sensor<F: Real> {
+pub(super) trait Sensor<F: Real>: Clone + Send + 'static {
     /// Columns of the sensor in the trace.
     const COLUMNS: &'static [Column];
 
@@ -29,6 +29,7 @@ pub(super) trait Sensor<F: Real> {
 }
 
 /// The joint knows the true motion.
+#[derive(Clone)]
 pub(super) struct Ideal;
 
 impl<F: Real> Sensor<F> for Ideal {
@@ -53,6 +54,7 @@ impl<F: Real> Sensor<F> for Ideal {
 }
 
 /// The joint knows the counts of an encoder at the motor.
+#[derive(Clone)]
 pub(super) struct Encoded<F> {
     encoder: Encoder,
     reader: EncoderReader<F>,

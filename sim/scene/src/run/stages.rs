@@ -97,6 +97,7 @@ pub(super) fn listed(scene: &Scene) -> impl Iterator<Item = &'static EffectSpec>
 }
 
 /// Numbers for ticks of another length.
+#[derive(Clone)]
 pub(super) struct Retiming {
     joint: Option<Validated<Settings>>,
     effects: EffectSettings,
@@ -124,7 +125,7 @@ impl Retiming {
 
 /// A stage of a bare solver, whose ticks can be of any length, and which is there from the first row on. The
 /// drive's ticks never change, and it shows nothing before the first of them.
-pub(super) trait InParts<F>: Sized {
+pub(super) trait InParts<F>: Clone + Send + 'static {
     /// Adds its torque on a joint that rests at a place.
     fn add_resting(&self, _place: &Position<F>, _shown: &mut Shown<F>) {}
 
@@ -168,6 +169,7 @@ impl<F: Real> InParts<F> for Effects<F> {
 }
 
 /// Limits of a device that remember the torque before them.
+#[derive(Clone)]
 pub(super) struct Remembering<F> {
     limits: TorqueLimits<F>,
     asked_nm: F,
@@ -182,7 +184,7 @@ impl<F: Real> Limits<F> for Remembering<F> {
 }
 
 /// Torque before the limits of a device.
-pub(super) trait Asked<F>: Limits<F> {
+pub(super) trait Asked<F>: Limits<F> + Clone + Send + 'static {
     /// The torque that came in, N·m; none where there are no limits.
     fn asked_nm(&self) -> Option<F>;
 }
@@ -201,7 +203,7 @@ impl<F: Real> Asked<F> for Remembering<F> {
 }
 
 /// A pipeline of any stages.
-pub(super) trait Rendering<F> {
+pub(super) trait Rendering<F>: Clone + Send + 'static {
     /// One tick, as [`Pipeline::tick_observed`] makes it, in the place of what was shown before.
     fn tick(&mut self, seen: &ShaftEstimate<F>, shown: &mut Shown<F>, heard: &mut Heard<F>);
 
@@ -251,9 +253,9 @@ fn render<F: Real, I: Check<F>, S: Symptom<F>, E: Addition<F>, L: Limits<F>>(
 
 impl<F: Real, I, S, E, L> Rendering<F> for Pipeline<F, I, S, E, L>
 where
-    I: Check<F>,
+    I: Check<F> + Clone + Send + 'static,
     S: Symptom<F> + InParts<F>,
-    E: Addition<F> + InParts<F> + Clone,
+    E: Addition<F> + InParts<F>,
     L: Asked<F>,
 {
     fn tick_part(

@@ -47,7 +47,7 @@ pub struct Summary {
     pub convention: Option<&'static str>,
     /// Restart rule of the stick-slip object.
     pub restart: Option<&'static str>,
-    /// Preset of the scene, if it started from one.
+    /// Preset of the scene, if it started from one and no number of its joint was changed.
     pub preset: Option<&'static str>,
     /// The effects that ran.
     pub effects: Vec<EffectSummary>,

@@ -14,6 +14,7 @@ use crepitus_model::render::{ShaftEstimate, Shown};
 use crepitus_plant::chain::Body;
 
 /// A device that only looks.
+#[derive(Clone)]
 pub(super) struct Watching<F, P, S> {
     stages: P,
     sensor: S,
@@ -38,6 +39,10 @@ impl<F: Real, P: Rendering<F>, S: Sensor<F>> Watching<F, P, S> {
 }
 
 impl<F: Real, P: Rendering<F>, S: Sensor<F>> Device for Watching<F, P, S> {
+    fn boxed(&self) -> Box<dyn Device> {
+        Box::new(self.clone())
+    }
+
     fn shown(&self) -> Shown<f64> {
         self.shown.to_f64()
     }

@@ -54,7 +54,7 @@ pub(super) fn read(section: &Section<'_>, duration_s: f64) -> Result<ReadMotion,
         MotionKind::Strokes => strokes(section)?,
         MotionKind::Recording => {
             let (motion, ripple, file) = recording(section, duration_s, &mut warnings)?;
-            (ripple_rad_s2, data) = (Some(ripple), Some(file));
+            (ripple_rad_s2, data) = (Some(ripple), file);
             motion
         }
         MotionKind::Released => Motion::rest(section.number("from_deg", ANY_DEG)?.to_radians()),

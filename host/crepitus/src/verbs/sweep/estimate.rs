@@ -5,37 +5,95 @@ use crate::failure::{Failure, print, print_json};
 use crate::interrupt;
 use crate::progress;
 use crepitus_studies::sweep::{
-    Ended, Format, Parts, Plan, Receiver, Row, Shard, run_all, table, totals,
+    Ended, Format, Parts, Plan, Receiver, Row, Shard, Stop, run_all, table, totals,
 };
 use serde_json::json;
 use std::io;
 use std::iter::once;
 use std::ops::Range;
-use std::time::Instant;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
-/// Runs that are measured.
+/// Most runs that are measured.
 const MEASURED: u64 = 1000;
 
-/// Runs before them that are not: the first ones warm up the processor.
+/// Time after which no other run is begun.
+const ENOUGH: Duration = Duration::from_secs(5);
+
+/// Most runs before them that are not measured, and the time after which none of these is begun: the first
+/// ones warm up the processor.
 const WARM_UP: u64 = 20;
+const WARM: Duration = Duration::from_millis(500);
+
+/// Points of a sweep in an order in which the first ones are from all over it, each once: multiples of about the
+/// golden ratio. Those that a thread takes at once stay together.
+struct Spread {
+    runs: u64,
+    at_once: u64,
+    stride: u64,
+}
+
+impl Spread {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        clippy::cast_precision_loss,
+        reason = "below 2^53"
+    )]
+    fn of(runs: u64, at_once: u64) -> Self {
+        let blocks = runs.div_ceil(at_once.max(1)).max(1);
+        let golden = (blocks as f64 * 0.618_033_988_749_894_9) as u64;
+        let stride = (golden.max(1)..=blocks).find(|&stride| is_coprime(stride, blocks));
+        Self {
+            runs,
+            at_once: at_once.max(1),
+            stride: stride.unwrap_or(1),
+        }
+    }
+
+    fn point(&self, i: u64) -> u64 {
+        let blocks = self.runs.div_ceil(self.at_once).max(1);
+        let block = u128::from(i / self.at_once) * u128::from(self.stride) % u128::from(blocks);
+        let first = u64::try_from(block).unwrap_or(0) * self.at_once;
+        // The last block may have fewer.
+        (first + i % self.at_once).min(self.runs.saturating_sub(1))
+    }
+}
+
+fn is_coprime(mut a: u64, mut b: u64) -> bool {
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    a == 1
+}
 
 pub(super) fn run(plan: &Plan, runs: u64, threads: usize, as_json: bool) -> Result<(), Failure> {
-    let count = MEASURED.min(plan.runs());
-    let point = |i: u64| {
-        let place = u128::from(i) * u128::from(plan.runs()) / u128::from(count);
-        u64::try_from(place).unwrap_or(0)
-    };
-    let mut warm = Rows::new(WARM_UP);
-    let run = |numbers: Range<u64>, stop: &_, give: &mut dyn FnMut(Row)| {
-        totals(plan, numbers.map(point), stop, give)
-    };
     let threads = plan.threads(threads);
-    let warm_up = WARM_UP.min(count);
-    run_all(once(0..warm_up), threads, &mut warm, run).map_err(failure)?;
-    let mut rows = Rows::new(count);
-    let begun = Instant::now();
-    let threads = run_all(once(0..count), threads, &mut rows, run).map_err(failure)?;
-    let wall_s = begun.elapsed().as_secs_f64();
+    let spread = Spread::of(plan.runs(), threads.at_once);
+    let most = MEASURED.min(plan.runs());
+    // A run that has begun is ended: leaving out the long ones would make the others look typical.
+    let measure = |most: u64, time: Duration| -> Result<_, Failure> {
+        let (begun, busy_ns) = (Instant::now(), AtomicU64::new(0));
+        let mut rows = Rows::new(most);
+        let run = |numbers: Range<u64>, stop: &Stop, give: &mut dyn FnMut(Row)| {
+            if numbers.start > 0 && begun.elapsed() >= time {
+                return Err(Ended::Stopped);
+            }
+            let begun = Instant::now();
+            totals(plan, numbers.map(|i| spread.point(i)), stop, give)?;
+            let ns = u64::try_from(begun.elapsed().as_nanos()).unwrap_or(u64::MAX);
+            busy_ns.fetch_add(ns, Ordering::Relaxed);
+            Ok(())
+        };
+        let threads = run_all(once(0..most), threads, &mut rows, run).map_err(failure)?;
+        let busy = Duration::from_nanos(busy_ns.into_inner());
+        Ok((rows, threads, busy.as_secs_f64()))
+    };
+    measure(WARM_UP.min(most), WARM)?;
+    let (rows, threads, busy_s) = measure(most, ENOUGH)?;
+    let count = rows.ended.len() as u64;
+    // As long as all threads have work, as in the sweep.
+    let wall_s = busy_s / usize_to_f64(threads);
 
     let failed = rows
         .ended
@@ -141,5 +199,24 @@ impl Receiver for Rows {
             return Err(Ended::Stopped);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Spread;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn the_first_points_are_from_all_over_the_sweep_and_each_is_taken_once() {
+        for runs in [1, 2, 3, 15, 1000, 1024, 1_000_000_000] {
+            let spread = Spread::of(runs, 1);
+            let taken: BTreeSet<_> = (0..runs.min(1000)).map(|i| spread.point(i)).collect();
+            assert_eq!(taken.len() as u64, runs.min(1000), "{runs}");
+            assert!(taken.iter().all(|&point| point < runs));
+        }
+        let spread = Spread::of(100_000, 1);
+        let tenths: BTreeSet<_> = (0..30).map(|i| spread.point(i) / 10_000).collect();
+        assert_eq!(tenths.len(), 10);
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn run(
         return Err(Failure::Input("--merge: name a folder".to_owned()));
     };
     let claim = arguments.force.claim("sweep", [""; 0]);
-    let format = arguments.format;
+    let format = arguments.format();
     let mut store = Store::open(first, format, claim).map_err(store_failure)?;
     let others = others.iter().map(|other| Store::read(other));
     let others = others

@@ -95,7 +95,7 @@ fn a_class_that_answers_together_is_stored_once_and_then_confirmed() {
 }
 
 /// The number of samples that a page has received by now.
-fn received(listening: &mut broadcast::Receiver<Bytes>) -> usize {
+pub(super) fn received(listening: &mut broadcast::Receiver<Bytes>) -> usize {
     let frames = std::iter::from_fn(|| listening.try_recv().ok());
     let samples = frames.map(|frame| {
         assert_eq!(frame[1], Kind::Samples as u8);

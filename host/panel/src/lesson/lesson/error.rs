@@ -1,9 +1,9 @@
 //! Errors of a lesson.
 
 use super::MOST_SEED;
-use crate::lesson::finding::Finding;
 use crate::lesson::plan::MOST_STUDENTS;
 use crepitus_scene::preset::Level;
+use crepitus_studies::experiment::finding::Finding;
 
 /// Most characters of a pseudonym.
 pub(super) const MOST_PSEUDONYM: usize = 20;

@@ -1,9 +1,9 @@
 use super::*;
-use crate::lesson::finding::Finding;
 use crate::lesson::plans;
 use crate::live::{Aim, Target};
 use crepitus_knee::examination::signs;
 use crepitus_scene::preset::{Disorder, Level};
+use crepitus_studies::experiment::finding::Finding;
 use serde_json::json;
 
 /// Targets of the panel that the shipped lessons name.

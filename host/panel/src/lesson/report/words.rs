@@ -1,9 +1,9 @@
 //! Words and numbers of a report, in the reader's language.
 
 use super::Text;
-use crate::lesson::finding::Finding;
 use crate::lesson::summary::Interval;
 use crepitus_scene::preset::Level;
+use crepitus_studies::experiment::finding::Finding;
 
 /// Texts by key.
 pub(super) struct Words<'a>(pub(super) Text<'a>);

@@ -101,6 +101,32 @@ impl Points {
         Ok(Self { paths, values })
     }
 
+    /// Writes the table as CSV, which [`Self::from_written`] reads back to the same texts.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub(crate) fn write(&self, to: impl io::Write) -> io::Result<()> {
+        let mut writer = csv::Writer::from_writer(to);
+        writer.write_record(&self.paths)?;
+        for row in &self.values {
+            writer.write_record(row)?;
+        }
+        writer.flush()
+    }
+
+    /// Reads a table that [`Self::write`] has written.
+    ///
+    /// # Errors
+    /// Description of the error, if it is not one.
+    pub(crate) fn from_written(from: impl io::Read) -> Result<Self, String> {
+        let mut reader = csv::Reader::from_reader(from);
+        let texts = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect();
+        let paths = texts(reader.headers().map_err(|e| e.to_string())?);
+        let rows = reader.records().map(|row| row.map(|row| texts(&row)));
+        let rows = rows.collect::<Result<Vec<Vec<_>>, _>>();
+        Self::new(paths, rows.map_err(|e| e.to_string())?).map_err(|e| e.to_string())
+    }
+
     pub(super) const fn rows(&self) -> u64 {
         self.values.len() as u64
     }
@@ -144,6 +170,17 @@ mod tests {
         assert_eq!(points.paths(), ["a.b", "c"]);
         assert_eq!(points.rows(), 2);
         assert_eq!(points.row(0), ["1.5", "exact"]);
+    }
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let texts = |texts: &[&str]| texts.iter().map(|&text| text.to_owned()).collect();
+        let rows = vec![texts(&["[1, 2]", " \"a\";\n"]), texts(&["1,5", "0.1"])];
+        let points = Points::new(texts(&["a.b", "c"]), rows).unwrap();
+        let mut written = Vec::new();
+        points.write(&mut written).unwrap();
+        assert_eq!(Points::from_written(written.as_slice()).unwrap(), points);
+        assert!(Points::from_written("a,b\n1\n".as_bytes()).is_err());
     }
 
     #[test]

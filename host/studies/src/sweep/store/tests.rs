@@ -1,7 +1,9 @@
 //! A sweep that is killed, merged, or in the way of another one.
 
 use super::*;
+use crate::sweep::recipe::Drawing;
 use crate::sweep::row::Cell;
+use crepitus_scene::Overrides;
 use std::path::PathBuf;
 use std::slice::from_ref;
 
@@ -17,6 +19,17 @@ pub(crate) fn identity(runs: u64, sha256: &str) -> Identity {
     }
 }
 
+fn recipe() -> Recipe {
+    Recipe {
+        crepitus_commit: None,
+        scene_toml: "version = 1".to_owned(),
+        scene_as_run: String::new(),
+        data: None,
+        overrides: Overrides::default(),
+        design: Drawing::Grid { vary: Vec::new() },
+    }
+}
+
 fn opening(shard: &str, force: bool) -> Opening {
     Opening {
         shard: shard.parse().unwrap(),
@@ -28,7 +41,7 @@ fn opening(shard: &str, force: bool) -> Opening {
 
 /// Opens the folder of ten runs.
 fn create(folder: &Path, shard: &str) -> Result<Store, StoreError> {
-    Store::create(folder, &identity(10, ""), &opening(shard, false))
+    Store::create(folder, &identity(10, ""), &recipe(), &opening(shard, false))
 }
 
 fn rows(store: &mut Store, points: Range<u64>) {
@@ -181,27 +194,34 @@ fn another_sweep_is_refused_and_replaced_with_force() {
         (identity(11, ""), "10 runs, not 11"),
         (identity(10, "another"), "another scene text"),
     ] {
-        let error = Store::create(home.path(), &other, &opening("1/1", false)).unwrap_err();
+        let error =
+            Store::create(home.path(), &other, &recipe(), &opening("1/1", false)).unwrap_err();
         assert!(error.to_string().contains(word), "{error}");
     }
     let another = identity(10, "another");
-    let other = Store::create(other_home.path(), &another, &opening("1/1", false)).unwrap();
+    let other = Store::create(
+        other_home.path(),
+        &another,
+        &recipe(),
+        &opening("1/1", false),
+    )
+    .unwrap();
     let error = store.take_parts_of(&other).unwrap_err();
     assert!(matches!(error, StoreError::Another { .. }), "{error}");
     // Not while it runs.
-    let error = Store::create(home.path(), &another, &opening("1/1", true)).unwrap_err();
+    let error = Store::create(home.path(), &another, &recipe(), &opening("1/1", true)).unwrap_err();
     assert!(matches!(error, StoreError::Running { .. }), "{error}");
     drop(store);
     let notes = home.path().join("parts/notes.txt");
     fs::write(home.path().join("notes.txt"), "mine").unwrap();
     fs::write(&notes, "mine").unwrap();
     // The folder of the parts is not only this program's any more.
-    let error = Store::create(home.path(), &another, &opening("1/1", true)).unwrap_err();
+    let error = Store::create(home.path(), &another, &recipe(), &opening("1/1", true)).unwrap_err();
     assert!(matches!(error, StoreError::Output(_)), "{error}");
     assert_eq!(fs::read_to_string(&notes).unwrap(), "mine");
     fs::remove_file(notes).unwrap();
     fs::remove_dir(home.path().join("parts")).unwrap();
-    let store = Store::create(home.path(), &another, &opening("1/1", true)).unwrap();
+    let store = Store::create(home.path(), &another, &recipe(), &opening("1/1", true)).unwrap();
     assert_eq!(store.identity().sha256, "another");
     assert_eq!(store.missing(0..10).unwrap().len(), 1);
     assert!(home.path().join("notes.txt").exists());
@@ -249,7 +269,12 @@ fn what_is_foreign_stays() {
         let error = create(home.path(), "1/1").expect_err("it is in the way");
         assert!(matches!(error, StoreError::Output(_)), "{error}");
         assert_eq!(everything(home.path()), before, "{path:?}");
-        let forced = Store::create(home.path(), &identity(10, ""), &opening("1/1", true));
+        let forced = Store::create(
+            home.path(),
+            &identity(10, ""),
+            &recipe(),
+            &opening("1/1", true),
+        );
         assert_eq!(forced.is_ok(), yields, "{path:?}");
         if yields {
             let mut forced = forced.unwrap();
@@ -278,7 +303,7 @@ fn a_trace_of_somebody_else_is_in_the_way_with_force_alone_replaced() {
     drop(store);
     // Another sweep takes its place, and nothing of theirs.
     let another = identity(10, "another");
-    Store::create(home.path(), &another, &opening("1/1", true)).unwrap();
+    Store::create(home.path(), &another, &recipe(), &opening("1/1", true)).unwrap();
     assert_eq!(everything(&traces).len(), 3);
 }
 

@@ -1,15 +1,19 @@
 //! The table as a Parquet file. Every column but the index is optional: a run that
 //! failed has a reason instead of numbers.
 
-use super::{Chunk, INDEX, Rows, TableError};
+use super::{Chunk, Content, INDEX, Rows, TableError};
 use crate::sweep::kind::Kind;
+use crate::sweep::parts::{Cells, Column};
 use crate::sweep::plan::Identity;
+use crate::sweep::row::Cell;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{WriterProperties, WriterVersion};
+use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::record::Field;
 use parquet::schema::types::Type;
 use std::io::{self, Write};
 use std::mem::take;
@@ -149,4 +153,43 @@ fn properties(identity: &Identity) -> Result<WriterProperties> {
 
 fn other(error: ParquetError) -> io::Error {
     io::Error::other(error)
+}
+
+/// Reads a table back, with cells as text.
+pub(super) fn read(file: std::fs::File) -> io::Result<Content> {
+    let reader = SerializedFileReader::new(file).map_err(other)?;
+    let mut content = Content::default();
+    let mut cells: Vec<Vec<String>> = Vec::new();
+    let schema = reader.metadata().file_metadata().schema_descr();
+    for column in schema.columns().iter().skip(1) {
+        content.columns.push(Column {
+            name: column.name().to_owned(),
+            kind: match column.physical_type() {
+                Physical::INT64 => Kind::Whole,
+                Physical::DOUBLE => Kind::Number,
+                _ => Kind::Text,
+            },
+            cells: Cells::Each(Vec::new()),
+        });
+        cells.push(Vec::new());
+    }
+    for row in reader.get_row_iter(None).map_err(other)? {
+        let row = row.map_err(other)?;
+        let mut fields = row.get_column_iter();
+        if let Some((_, Field::Long(index))) = fields.next() {
+            content.index.push(index.cast_unsigned());
+        }
+        for (cells, (_, field)) in cells.iter_mut().zip(fields) {
+            cells.push(match field {
+                Field::Long(whole) => Cell::Whole(*whole).to_string(),
+                Field::Double(number) => Cell::Number(*number).to_string(),
+                Field::Str(text) => text.clone(),
+                _ => String::new(),
+            });
+        }
+    }
+    for (column, cells) in content.columns.iter_mut().zip(cells) {
+        column.cells = Cells::Each(cells);
+    }
+    Ok(content)
 }

@@ -43,6 +43,7 @@ impl Palm {
 }
 
 /// A hand that grips what it holds.
+#[derive(Clone)]
 pub(super) struct Grip {
     hand: Hand,
     palm: Palm,

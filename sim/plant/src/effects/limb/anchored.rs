@@ -25,6 +25,7 @@ pub(super) fn term(k: usize, share: &mut f64, growth: f64) -> f64 {
 }
 
 /// A torque with its present anchor.
+#[derive(Clone)]
 pub(super) struct Anchored<T> {
     torque: T,
     /// The anchor, rad; NaN before the first.

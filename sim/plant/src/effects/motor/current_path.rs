@@ -89,7 +89,7 @@ pub enum Half {
     B,
 }
 
-/// What is left of bends and edges at a time, seen from the half that switches first.
+/// Rests of bends and edges at a time, seen from the half that switches first.
 #[derive(Clone, Copy, Debug, Default)]
 struct Left {
     /// The current shown above i − λ·i′, A.

@@ -1,4 +1,4 @@
-//! What is left of an exponential at the first sample, by factors that are computed once.
+//! Rests of an exponential at the first sample, by factors that are computed once.
 //!
 //! The edges of half a tick are x = h/4·|d| before and after its middle h/4, each with a dead time D after it. With the
 //! first sample at s, and c = s − h/4 − D, that leaves of what begins as a dead time ends
@@ -29,7 +29,7 @@ const PLACE_S: f64 = HALF_S / 2.0 / 128.0;
 /// The furthest from a place in time constants.
 const REACH: f64 = 0.1;
 
-/// What is added rounds a number below 2⁵¹ to a whole one, which its last bits are.
+/// An addend that rounds a number below 2⁵¹ to a whole one, which its last bits are.
 const WHOLE: f64 = 4_503_599_627_370_496.0;
 
 /// Coefficients of the series of an exponential, from the last one.
@@ -60,11 +60,11 @@ pub(super) struct Fading {
     later: Option<[f64; PLACES]>,
     /// e^(−2c/τ).
     both: f64,
-    /// What a dead time leaves.
+    /// The rest after a dead time.
     dead: f64,
-    /// What is left from the beginning of half a tick to the first sample.
+    /// The rest from the beginning of half a tick to the first sample.
     pub(super) to_first: f64,
-    /// What is left from the first sample to the end of half a tick.
+    /// The rest from the first sample to the end of half a tick.
     pub(super) to_end: f64,
     /// Mean at all samples of what was there at the first.
     pub(super) sampled: f64,
@@ -108,7 +108,7 @@ impl Fading {
         }
     }
 
-    /// What is left after a time, s.
+    /// The rest after a time, s.
     #[inline]
     pub(super) fn left(&self, length_s: f64) -> f64 {
         (-length_s * self.per_s).exp()
